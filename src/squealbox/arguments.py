@@ -9,12 +9,20 @@ import inspect
 import math
 import os
 from collections.abc import Callable, Mapping
-from typing import Any, ParamSpec, TypeVar
+from typing import Any, ParamSpec, Protocol, TypeVar
 
 import numpy as np
 
 from squealbox.parameters import DataSheet, Missing, Parameter, ParameterError, known_names
 from squealbox.waiting import Progress
+
+
+class Brake(Protocol):
+    """A design as an analysis sees it: what makes a system."""
+
+    def system(self) -> Any:
+        """The equation of motion, a `system.System`."""
+
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -53,7 +61,7 @@ def interval(value: Any) -> str:
     return "" if pair and value[0] < value[1] else "two finite numbers (low, high) with low < high"
 
 
-def bounds(value: Any) -> str:
+def bounds(value: object) -> str:
     """An interval; those of several parameters by name are read by `squealbox.family`, which names the one to blame."""
     return "" if isinstance(value, Mapping) else interval(value)
 
@@ -64,7 +72,7 @@ def band(value: Any) -> str:
     return "" if good else "(f1, f2) in Hz with 0 <= f1 < f2"
 
 
-def design(value: Any) -> str:
+def design(value: object) -> str:
     """A design or a system, not its class and not its file."""
     if isinstance(value, type):
         return f"a design made from it, {value.__name__}(...)"
@@ -78,7 +86,7 @@ def design(value: Any) -> str:
     return "" if good else "a design or a System"
 
 
-def with_parameters(value: Any) -> str:
+def with_parameters(value: object) -> str:
     """A design: what has parameters by name, which a System has not."""
     told = design(value)
     if told or callable(getattr(value, "system", None)):
@@ -86,30 +94,30 @@ def with_parameters(value: Any) -> str:
     return "a design, whose parameters have names; OwnBrake(M, C, K, contacts) makes one of matrices"
 
 
-def designs(value: Any) -> str:
+def designs(value: object) -> str:
     """A design or a system, or a list of them."""
     each = value if isinstance(value, (list, tuple)) else [value]
     return next((expected for one in each if (expected := design(one))), "")
 
 
-def named(value: Any) -> str:
+def named(value: object) -> str:
     """Values by the names of parameters."""
     good = isinstance(value, (Mapping, DataSheet)) or hasattr(value, "names")
     return "" if good else 'a dictionary by parameter, such as {"friction.static": ...}'
 
 
-def word(value: Any) -> str:
+def word(value: object) -> str:
     """The name of a parameter, or a dictionary of it and what it may be."""
     good = isinstance(value, (str, Mapping))
     return "" if good else 'the name of a parameter, such as "friction.static", or {"friction.static": ...}'
 
 
-def asked(value: Any) -> str:
+def asked(value: object) -> str:
     """A number of a design."""
     return "" if callable(value) else "a function of a design, or a quantity such as quantities.growth_rate()"
 
 
-def path(value: Any) -> str:
+def path(value: object) -> str:
     """A file or folder."""
     return "" if isinstance(value, (str, os.PathLike)) else "a path"
 

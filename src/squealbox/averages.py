@@ -15,7 +15,7 @@ IN_TEXT, WIDTHS = 16, (0.0, 2.0**-7, 2.0**-5, 2.0**-3, 0.5, 1.5)  # Gauss points
 BEYOND = 1e100  # m/s, the last edge
 
 
-def mean_over_phase(h: Callable[[Any], Any], v: Any, w: Any, kinks: Sequence[Any] = ()) -> Any:
+def mean_over_phase(h: Callable[[Any], Any], v: np.ndarray, w: np.ndarray, kinks: Sequence[Any] = ()) -> Any:
     """E[h(v + w sin)] for arrays v, w of one shape (...); `h` is called with u of shape (..., panels, nodes).
 
     `kinks` are values |u| > 0 at which h is not smooth; u = 0 always counts as one.

@@ -24,24 +24,24 @@ class BristleLaw(FrictionLaw):
         """s0 [1/m], s1 [s/m] and s2 [s/m]."""
         raise NotImplementedError
 
-    def steady_deflection(self, velocity: Any) -> Any:
+    def steady_deflection(self, velocity: float | np.ndarray) -> Any:
         """z [m] of steady sliding at a velocity of either sign."""
         dry = self.mu(velocity) - self.grip[2] * np.abs(velocity)
         return np.sign(velocity) * dry / self.grip[0]
 
-    def relaxation(self, velocity: Any) -> tuple[Any, Any]:
+    def relaxation(self, velocity: float | np.ndarray) -> tuple[Any, Any]:
         """(dz'/dz [1/s], dz'/dv [-]) in steady sliding: -s0 |v|/g and |v| g'/g."""
         speed = np.abs(velocity)
         dry, slope = self.mu(speed) - self.grip[2] * speed, self.slope_at(speed) - self.grip[2]
         return -self.grip[0] * speed / dry, speed * slope / dry
 
-    def feeds(self, velocity: Any) -> Any:
+    def feeds(self, velocity: float | np.ndarray) -> Any:
         """Whether s1 |v| > 4 g, where the bristles may put energy in: (s0 z + s1 z') v < s0 z z' for some z."""
         speed = np.abs(velocity)
         dry = self.mu(speed) - self.grip[2] * speed
         return self.grip[1] * speed > 4.0 * dry
 
-    def direct_slope(self, velocity: Any) -> Any:
+    def direct_slope(self, velocity: float | np.ndarray) -> Any:
         """s1 dz'/dv + s2 [s/m]: the rest of the slope comes with the bristles."""
         _, damping, viscous = self.grip
         return damping * self.relaxation(velocity)[1] + viscous
@@ -161,14 +161,14 @@ class Dahl(BristleLaw):
         return self.stiffness, 0.0, 0.0
 
     @classmethod
-    def guess(cls, speeds: Any, values: Any) -> dict[str, float]:
+    def guess(cls, speeds: np.ndarray, values: np.ndarray) -> dict[str, float]:
         return {}  # its curve is that of Coulomb
 
     def coefficients(self) -> tuple[Any, ...]:
         weights = (1.0 * (np.asarray(self.exponent) == i) for i in (1, 2, 3))
         return (self.kinetic, self.stiffness, *(float(w) if np.ndim(w) == 0 else w for w in weights))
 
-    def relaxation(self, velocity: Any) -> tuple[Any, Any]:
+    def relaxation(self, velocity: float | np.ndarray) -> tuple[Any, Any]:
         """(dz'/dz [1/s], dz'/dv [-]) in steady sliding; 0 for an exponent above 1."""
         rate, _ = super().relaxation(velocity)
         return np.where(np.asarray(self.exponent) == 1.0, rate, 0.0), 0.0 * rate

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.contacts import numbered
 from squealbox.friction import Table
@@ -18,7 +19,7 @@ COARSE = 1e-10  # of a run's duration: instants known no better are told
 PULL = 1e-9  # of the largest normal force: less is round-off
 
 
-def along(system: System, q: Any, qd: Any) -> tuple[str, ...]:
+def along(system: System, q: ArrayLike, qd: ArrayLike) -> tuple[str, ...]:
     """As :func:`out_of_range`, from the displacements and velocities (..., n) of a motion under constant N0 and V.
 
     Rotations beyond `SMALL` are said too: the equation is linear in them.
@@ -33,7 +34,7 @@ def along(system: System, q: Any, qd: Any) -> tuple[str, ...]:
     return (*out_of_range(system, N0 + q @ n.T, V - qd @ t.T), *turned(system, q))
 
 
-def turned(system: System, q: Any) -> tuple[str, ...]:
+def turned(system: System, q: ArrayLike) -> tuple[str, ...]:
     """A sentence for each rotation (..., n) that leaves the range of small angles."""
     most = np.max(np.abs(np.nan_to_num(np.atleast_2d(q))), axis=0, initial=0.0)
     return tuple(
@@ -66,7 +67,7 @@ FEEDS = (
 PULLS = "{name}: N falls to {least:.4g} N: it would have to pull, where a unilateral contact lifts off"
 
 
-def pulled(names: Sequence[str], unilateral: Any, normal_force: Any) -> tuple[tuple[str, float], ...]:
+def pulled(names: Sequence[str], unilateral: ArrayLike, normal_force: ArrayLike) -> tuple[tuple[str, float], ...]:
     """Name and N [N] of each bilateral contact that pulls in steady sliding, from tables (contacts,).
 
     >>> pulled(("pad", "shoe"), [False, True], [-2.0, 0.0])
@@ -77,7 +78,7 @@ def pulled(names: Sequence[str], unilateral: Any, normal_force: Any) -> tuple[tu
     return tuple((numbered(names)[i], float(force[i])) for i in which)
 
 
-def pulling(names: Sequence[str], unilateral: Any, normal_force: Any) -> tuple[str, ...]:
+def pulling(names: Sequence[str], unilateral: ArrayLike, normal_force: ArrayLike) -> tuple[str, ...]:
     """A sentence for each contact that is `pulled`.
 
     >>> pulling(("pad", "shoe"), [False, True], [-2.0, 0.0])
@@ -86,7 +87,7 @@ def pulling(names: Sequence[str], unilateral: Any, normal_force: Any) -> tuple[s
     return tuple(PULLS.format(name=name, least=least) for name, least in pulled(names, unilateral, normal_force))
 
 
-def out_of_range(system: System, normal_force: Any, sliding_velocity: Any) -> tuple[str, ...]:
+def out_of_range(system: System, normal_force: ArrayLike, sliding_velocity: ArrayLike) -> tuple[str, ...]:
     """Sentences on what a motion asks of its contacts that their model does not promise.
 
     Parameters
@@ -123,7 +124,7 @@ def out_of_range(system: System, normal_force: Any, sliding_velocity: Any) -> tu
     return tuple(said)
 
 
-def of_a_run(system: System, lowest: Any, fastest: Any) -> tuple[str, ...]:
+def of_a_run(system: System, lowest: np.ndarray, fastest: np.ndarray) -> tuple[str, ...]:
     """As :func:`out_of_range`, from the least normal force [N] and the fastest sliding [m/s] of each contact."""
     said: list[str] = []
     for name, contact, least, most in zip(system.contact_names, system.contacts, lowest, fastest, strict=True):
@@ -148,7 +149,7 @@ def of_the_clock(begin: float, duration: float) -> tuple[str, ...]:
     return (f"start_time = {begin:g} s: {lost}; V(t) and f(t) no better",)
 
 
-def of_many_runs(system: System, lowest: Any, fastest: Any, least_mu: Any) -> tuple[str, ...]:
+def of_many_runs(system: System, lowest: np.ndarray, fastest: np.ndarray, least_mu: np.ndarray) -> tuple[str, ...]:
     """As :func:`of_a_run`, of runs told in the rows of three tables (runs, contacts), NaN where there was no run."""
     said: list[str] = []
     for c, (name, contact) in enumerate(zip(system.contact_names, system.contacts, strict=True)):
@@ -165,12 +166,12 @@ def of_many_runs(system: System, lowest: Any, fastest: Any, least_mu: Any) -> tu
     return tuple(said)
 
 
-def least_coefficient(contact: Contact, fastest: Any) -> Any:
+def least_coefficient(contact: Contact, fastest: ArrayLike) -> Any:
     """The least mu between rest and the fastest sliding [m/s] of each run (runs,); the law may be a family (runs,)."""
     return np.min(contact.law.mu(np.linspace(0.0, 1.0, 17)[:, None] * np.asarray(fastest)), axis=0)
 
 
-def _in(name: str, which: Any, count: int) -> str:
+def _in(name: str, which: np.ndarray, count: int) -> str:
     return f"{name} in {int(np.sum(which))} of {count} trajectories"
 
 
@@ -187,7 +188,7 @@ def _pulls(name: str, contact: Contact, least: float, round_off: float) -> list[
     return [PULLS.format(name=name, least=least)] if not contact.unilateral and least < -round_off else []
 
 
-def _leaves(name: str, contact: Contact, looked: Any, fastest: float) -> list[str]:
+def _leaves(name: str, contact: Contact, looked: np.ndarray, fastest: float) -> list[str]:
     """What is to be said of the law of a contact at the speeds `looked` at, up to the fastest [m/s]."""
     said, mu = [], np.asarray(contact.law.mu(looked), dtype=float)
     least = float(np.fmin.reduce(mu, axis=None))

@@ -6,7 +6,7 @@ acts along a is -mu N (a . q') / |V|. The row a is `across`; other codes call it
 """
 
 from collections.abc import Iterator, Sequence
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 import scipy
@@ -15,6 +15,9 @@ from squealbox.law import FrictionLaw
 from squealbox.matrices import InvalidSystem, array, is_sparse
 from squealbox.parameters import DataSheet
 from squealbox.schedules import Schedule, value_at
+
+if TYPE_CHECKING:
+    from scipy.sparse import sparray
 
 ROWS = ("n", "d", "t", "normal", "across")  # of these, normal and across may be missing
 
@@ -255,7 +258,7 @@ class Contacts(DataSheet):
         values = getattr(self, name)
         return np.array([value_at(value, time) for value in values], float) if isinstance(values, tuple) else values
 
-    def friction(self, speed: Any) -> tuple[Any, Any]:
+    def friction(self, speed: np.ndarray) -> tuple[Any, Any]:
         """mu [-] and its slope [s/m] at the sliding speeds (contacts,)."""
         if isinstance(self.law, FrictionLaw):
             pair = self.law.mu(speed), self.law.slope_at(speed)
@@ -290,7 +293,7 @@ def _each(name: str, values: Any, count: int) -> Any:
     return np.broadcast_to(found, (count,))
 
 
-def _rows(name: str, rows: Any) -> Any:
+def _rows(name: str, rows: "np.ndarray | sparray") -> Any:
     """A table of rows in compressed sparse rows, whose values are real and finite."""
     if is_sparse(rows):
         return _finite(name, rows if isinstance(rows, scipy.sparse.csr_array) else scipy.sparse.csr_array(rows))
@@ -316,7 +319,7 @@ def dense_rows(contact: Contact) -> Contact:
     return contact.replace(rows) if rows else contact
 
 
-def sparse_matrix(name: str, matrix: Any, ndim: int = 2) -> Any:
+def sparse_matrix(name: str, matrix: "sparray", ndim: int = 2) -> Any:
     """A matrix in compressed sparse rows, finite and real, or `InvalidSystem`."""
     if is_sparse(matrix):
         return _finite(name, matrix if isinstance(matrix, scipy.sparse.csr_array) else scipy.sparse.csr_array(matrix))
@@ -326,7 +329,7 @@ def sparse_matrix(name: str, matrix: Any, ndim: int = 2) -> Any:
     return scipy.sparse.csr_array(found)
 
 
-def _finite(name: str, table: Any) -> Any:
+def _finite(name: str, table: "sparray") -> Any:
     """A sparse array of finite real numbers without duplicate entries, or `InvalidSystem`.
 
     A copy that cannot be written to; such a one is taken as it is, so that systems of one brake share their matrices.
@@ -341,7 +344,7 @@ def _finite(name: str, table: Any) -> Any:
     return unchanging(table)
 
 
-def unchanging(table: Any) -> Any:
+def unchanging(table: "sparray") -> Any:
     """A sparse array without duplicate entries that can no longer be written to."""
     table.sum_duplicates()
     for part in (table.data, table.indices, table.indptr):

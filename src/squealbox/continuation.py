@@ -13,6 +13,7 @@ from dataclasses import dataclass, field
 from typing import Any, NamedTuple, Protocol
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.result import COMPLETED, Outcome
 
@@ -76,10 +77,10 @@ class Path(Protocol):
     scale: Any
     span: float
 
-    def residual(self, x: Any, p: float) -> Any:
+    def residual(self, x: np.ndarray, p: float) -> Any:
         """Zero on the path, shape (n,)."""
 
-    def jacobian(self, x: Any, p: float) -> tuple[Any, Any]:
+    def jacobian(self, x: np.ndarray, p: float) -> tuple[Any, Any]:
         """Its derivatives by x (n, n) and by p (n,)."""
 
 
@@ -96,7 +97,7 @@ class Corrected(NamedTuple):
 class Equation:
     """residual(x, p) = 0 in scaled variables y = (x, p)/scale, (n + 1,); without `jacobian` by central differences."""
 
-    def __init__(self, residual: Residual, jacobian: Jacobian | None, scale: Any) -> None:
+    def __init__(self, residual: Residual, jacobian: Jacobian | None, scale: np.ndarray) -> None:
         self.residual, self.jacobian, self.scale = residual, jacobian, scale
 
     @classmethod
@@ -104,20 +105,20 @@ class Equation:
         """That of a path."""
         return cls(path.residual, path.jacobian, np.append(path.scale, path.span))
 
-    def y(self, x: Any, p: float) -> Any:
+    def y(self, x: np.ndarray, p: float) -> Any:
         """A point in scaled variables."""
         return np.append(x, p) / self.scale
 
-    def point(self, y: Any) -> tuple[Any, float]:
+    def point(self, y: np.ndarray) -> tuple[Any, float]:
         """(x, p)."""
         x = y * self.scale
         return x[:-1], float(x[-1])
 
-    def value(self, y: Any) -> Any:
+    def value(self, y: np.ndarray) -> Any:
         """The residual, (n,)."""
         return np.atleast_1d(np.asarray(self.residual(*self.point(y)), dtype=float))
 
-    def derivative(self, y: Any) -> Any:
+    def derivative(self, y: np.ndarray) -> Any:
         """d residual / d y, (n, n + 1); NaN where the residual is."""
         if self.jacobian is not None:
             by_x, by_p = self.jacobian(*self.point(y))
@@ -131,7 +132,13 @@ class Equation:
         return np.column_stack(columns)
 
     def corrected(
-        self, guess: Any, normal: Any, most: int, tolerance: float, reach: float = np.inf, kept: Any = None
+        self,
+        guess: np.ndarray,
+        normal: np.ndarray,
+        most: int,
+        tolerance: float,
+        reach: float = np.inf,
+        kept: np.ndarray | None = None,
     ) -> Corrected:
         """Newton's method on the plane through `guess` with that normal, to a correction within the tolerance.
 
@@ -160,7 +167,7 @@ class Equation:
 class Follower:
     """The path through (x, p), as an iterator over :class:`PathPoint`; see :func:`follow`."""
 
-    def __init__(self, residual: Residual, x: Any, p: float, **options: Any) -> None:
+    def __init__(self, residual: Residual, x: ArrayLike, p: float, **options: Any) -> None:
         jacobian: Jacobian | None = options.pop("jacobian", None)
         self.control: StepControl = options.pop("control", StepControl())
         self.direction: float = options.pop("direction", 1.0)
@@ -259,7 +266,9 @@ class Follower:
         step = share * beyond.step
         yield self._point(y, tangent, previous.arclength + step, step, iterations, size, sign=sign)
 
-    def _correct(self, guess: Any, normal: Any, most: int, reach: float = np.inf) -> tuple[Any, int, float]:
+    def _correct(
+        self, guess: np.ndarray, normal: np.ndarray, most: int, reach: float = np.inf
+    ) -> tuple[Any, int, float]:
         """The root on the plane through `guess` or None, steps, largest |residual|.
 
         Corrections with a kept derivative are cheap, so they count as steps only up to those that are wanted.
@@ -271,7 +280,7 @@ class Follower:
         steps = min(found.iterations, max(found.fresh + 1, self.control.wanted_steps))
         return (found.y if size <= self.control.residual_tolerance else None), steps, size
 
-    def _tangent(self, y: Any, along: Any) -> tuple[Any, float]:
+    def _tangent(self, y: np.ndarray, along: np.ndarray) -> tuple[Any, float]:
         """Unit null vector of the derivative on the side of `along` (or NaN), and the bordered determinant's sign."""
         derivative = self.equation.derivative(y)
         if not np.all(np.isfinite(derivative)):
@@ -279,10 +288,10 @@ class Follower:
         tangent = null_vector(derivative, along)
         return tangent, float(np.linalg.slogdet(np.vstack([derivative, tangent]))[0])
 
-    def _sign(self, y: Any, tangent: Any) -> float:
+    def _sign(self, y: np.ndarray, tangent: np.ndarray) -> float:
         return float(np.linalg.slogdet(np.vstack([self.equation.derivative(y), tangent]))[0])
 
-    def _point(self, y: Any, tangent: Any, *numbers: Any, **marks: Any) -> PathPoint:
+    def _point(self, y: np.ndarray, tangent: np.ndarray, *numbers: Any, **marks: Any) -> PathPoint:
         return PathPoint(*self.equation.point(y), tangent, *numbers, **marks)
 
     def _distance(self, a: PathPoint, b: PathPoint) -> float:
@@ -298,7 +307,7 @@ class Follower:
         return bool(0.0 < along <= 1.0 and off < 0.3 * np.linalg.norm(span) and same_way)
 
 
-def _solved(matrix: Any, right: Any) -> Any:
+def _solved(matrix: np.ndarray, right: np.ndarray) -> Any:
     """The correction; the shortest of several, and NaN for a derivative that is."""
     if not np.all(np.isfinite(matrix)):
         return np.full(len(right), np.nan)
@@ -308,7 +317,7 @@ def _solved(matrix: Any, right: Any) -> Any:
         return np.linalg.lstsq(matrix, right, rcond=None)[0]
 
 
-def null_vector(matrix: Any, along: Any) -> Any:
+def null_vector(matrix: np.ndarray, along: np.ndarray) -> Any:
     """Unit vector t with matrix t = 0, shape (n, n + 1), on the side of `along`, where it is not normal to that."""
     try:
         tangent = np.linalg.solve(np.vstack([matrix, along]), np.append(np.zeros(len(matrix)), 1.0))
@@ -321,7 +330,7 @@ def null_vector(matrix: Any, along: Any) -> Any:
     return last if last @ along >= 0.0 else -last
 
 
-def follow(residual: Residual, x: Any, p: float, **options: Any) -> Follower:
+def follow(residual: Residual, x: ArrayLike, p: float, **options: Any) -> Follower:
     """Follow the root of residual(x, p) = 0 nearest to x at p; returns a :class:`Follower` to iterate over.
 
     Parameters
@@ -348,6 +357,6 @@ def follow(residual: Residual, x: Any, p: float, **options: Any) -> Follower:
     return Follower(residual, x, p, **options)
 
 
-def along(path: Path, x: Any, p: float, **options: Any) -> Follower:
+def along(path: Path, x: ArrayLike, p: float, **options: Any) -> Follower:
     """The walk along a path, with the other options of :func:`follow`."""
     return follow(path.residual, x, p, jacobian=path.jacobian, x_scale=path.scale, p_scale=path.span, **options)

@@ -7,7 +7,7 @@ import math
 import textwrap
 import types
 import typing
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from typing import Annotated, Any
 
 import numpy as np
@@ -49,7 +49,7 @@ class Parameter:
         """True when a field may hold `value`: every entry is accepted, and of two ends the lower comes first."""
         return self.accepts(value) and (not self.ends or (value.shape == (2,) and bool(value[0] < value[1])))
 
-    def contains(self, value: Any) -> Any:
+    def contains(self, value: float | np.ndarray) -> Any:
         """Where a number, or each of an array, is inside the range."""
         above = value > self.low if self.low_open else value >= self.low
         return above & (value < self.high if self.high_open else value <= self.high)
@@ -96,7 +96,7 @@ class Missing(ParameterError, TypeError):
         self.args = (f"{owner}.{name} is missing{f': expected {expected}' if expected else ''}",)
 
 
-def complete(made: Any) -> Any:
+def complete(made: Callable[..., Any]) -> Any:
     """The maker of a sheet that says what is missing with its unit, range and meaning."""
 
     @functools.wraps(made)
@@ -178,7 +178,7 @@ Matrix = Annotated[Any, 2]
 
 
 @functools.cache
-def _hints(sheet: Any) -> dict[str, Any]:
+def _hints(sheet: type) -> dict[str, Any]:
     """Kept: reading them evaluates text, and every slider's move asks."""
     return typing.get_type_hints(sheet, include_extras=True)
 

@@ -18,11 +18,11 @@ class Distribution(DataSheet):
         """The same as a frozen distribution of `scipy.stats`."""
         raise NotImplementedError
 
-    def ppf(self, u: Any) -> Any:
+    def ppf(self, u: float | np.ndarray) -> Any:
         """The value below which the share `u` in (0, 1) lies; any shape."""
         return self.frozen().ppf(u)
 
-    def cdf(self, x: Any) -> Any:
+    def cdf(self, x: np.ndarray) -> Any:
         """The share of values below `x`; any shape."""
         return self.frozen().cdf(x)
 

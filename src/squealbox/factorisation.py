@@ -6,11 +6,16 @@ negative and zero eigenvalues; that of K - w^2 M counts the modes below w (Sturm
 """
 
 import importlib.util
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 import scipy
+from numpy.typing import ArrayLike
+
+if TYPE_CHECKING:
+    from scipy.sparse import sparray
 
 Library = Literal["auto", "superlu", "rslab"]
 LIBRARIES = ("auto", "superlu", "rslab")
@@ -44,11 +49,11 @@ class Factor:
     library = ""
     order: Order | None = None
 
-    def __init__(self, matrix: Any, symmetric: bool) -> None:
+    def __init__(self, matrix: "sparray", symmetric: bool) -> None:
         self._matrix, self.symmetric, self.size = matrix, symmetric, int(matrix.shape[0])
         self._lu: Any = None
 
-    def solve(self, right: Any, *, transposed: bool = False) -> Any:
+    def solve(self, right: ArrayLike, *, transposed: bool = False) -> Any:
         """A^-1 b, or A^-T b, for b (n,) or (n, k), real or complex."""
         right = np.asarray(right)
         if right.shape[:1] != (self.size,):
@@ -59,7 +64,7 @@ class Factor:
         right = np.ascontiguousarray(right, dtype=self._matrix.dtype)
         return self._solved(right, transposed and not self.symmetric).astype(kind, copy=False)
 
-    def solve_many(self, right: Any, *, transposed: bool = False, block: int = 64) -> Any:
+    def solve_many(self, right: ArrayLike, *, transposed: bool = False, block: int = 64) -> Any:
         """A^-1 B for B (n, k), in blocks of columns, so that no more than a block is copied at a time."""
         right = np.asarray(right)
         kind = np.result_type(self._matrix.dtype, right.dtype, float)
@@ -97,7 +102,7 @@ class Factor:
             self._lu = _superlu(self._matrix, self.symmetric)
         return self._lu
 
-    def _solved(self, right: Any, transposed: bool) -> Any:
+    def _solved(self, right: np.ndarray, transposed: bool) -> Any:
         return self._superlu().solve(right, trans="T" if transposed else "N")
 
     def _signs(self) -> tuple[int, int, int]:
@@ -116,7 +121,7 @@ class SuperLU(Factor):
 
     library = "superlu"
 
-    def __init__(self, matrix: Any, symmetric: bool) -> None:
+    def __init__(self, matrix: "sparray", symmetric: bool) -> None:
         super().__init__(matrix, symmetric)
         self._superlu()
 
@@ -126,7 +131,7 @@ class Rslab(Factor):
 
     library = "rslab"
 
-    def __init__(self, matrix: Any, symmetric: bool, threads: int, order: Order | None) -> None:
+    def __init__(self, matrix: "sparray", symmetric: bool, threads: int, order: Order | None) -> None:
         import rslab
 
         known = order if order is not None and order.symmetric == symmetric else None
@@ -152,7 +157,7 @@ class Rslab(Factor):
         known = self.solve(right)
         return light if np.linalg.norm(light.solve(right) - known) <= GOOD * np.linalg.norm(known) else self
 
-    def _solved(self, right: Any, transposed: bool) -> Any:
+    def _solved(self, right: np.ndarray, transposed: bool) -> Any:
         if transposed:
             columns = [self._factors.solve_transpose(column) for column in np.atleast_2d(right.T)]
             return columns[0] if right.ndim == 1 else np.stack(columns, axis=1)
@@ -211,7 +216,7 @@ def factor(
     return SuperLU(matrix, symmetric)
 
 
-def _placed(matrix: Any, pattern: Any) -> Any:
+def _placed(matrix: "sparray", pattern: "sparray") -> Any:
     """The matrix with zeros of its own wherever `pattern` has entries; None where it has entries elsewhere."""
     if all(np.array_equal(getattr(matrix, part), getattr(pattern, part)) for part in ("indptr", "indices")):
         return matrix
@@ -229,7 +234,7 @@ def _placed(matrix: Any, pattern: Any) -> Any:
     return scipy.sparse.csc_array((data, pattern.indices, pattern.indptr), shape=pattern.shape)
 
 
-def is_symmetric(matrix: Any) -> bool:
+def is_symmetric(matrix: "sparray") -> bool:
     """True where A = A' to round-off."""
     matrix = scipy.sparse.csc_array(matrix)
     if matrix.shape[0] != matrix.shape[1]:
@@ -244,12 +249,12 @@ def is_symmetric(matrix: Any) -> bool:
     return bool(np.max(np.abs(differences), initial=0.0) <= SYMMETRIC * largest)
 
 
-def _decomposed(matrix: Any, threshold: float) -> Any:
+def _decomposed(matrix: "sparray", threshold: float) -> Any:
     options = {"SymmetricMode": True}
     return scipy.sparse.linalg.splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=threshold, options=options)
 
 
-def _superlu(matrix: Any, symmetric: bool) -> Any:
+def _superlu(matrix: "sparray", symmetric: bool) -> Any:
     """SuperLU in its mode for matrices with (nearly) symmetric pattern, which keeps to the diagonal where it can."""
     threshold = 1e-3 if symmetric else 1e-2
     try:
@@ -260,7 +265,7 @@ def _superlu(matrix: Any, symmetric: bool) -> Any:
     return lu
 
 
-def _check(solve: Any, matrix: Any) -> None:
+def _check(solve: Callable[[Any], Any], matrix: "sparray") -> None:
     """Solve once for a known vector: factors of a matrix that is singular to round-off give a large residual."""
     known = np.random.default_rng(1).standard_normal(matrix.shape[0]).astype(matrix.dtype)
     right = matrix @ known
@@ -272,7 +277,7 @@ def _check(solve: Any, matrix: Any) -> None:
         raise SingularMatrix(f"the matrix of {matrix.shape[0]} rows is singular to working precision")
 
 
-def _parity(permutation: Any) -> int:
+def _parity(permutation: np.ndarray) -> int:
     """0 for an even permutation, 1 for an odd one: rows less cycles."""
     size = len(permutation)
     graph = scipy.sparse.csr_array((np.ones(size), (np.arange(size), permutation)), shape=(size, size))

@@ -17,10 +17,11 @@ import numpy as np
 
 from squealbox.arguments import interval
 from squealbox.parameters import DataSheet, Missing, ParameterError, parameter
-from squealbox.system import System, as_system
+from squealbox.system import DesignOrSystem, System, as_system
 
 Bounds = tuple[float, float]
 Varied = str | Mapping[str, Any]  # one parameter by name, or {name: bounds or values}
+DesignOrRecipe = DesignOrSystem | Callable[..., DesignOrSystem]  # a recipe makes a design of values of its parameters
 COUNTED = {1: "one parameter", 2: "two parameters"}
 
 
@@ -70,7 +71,14 @@ class Family:
 
     @classmethod
     def within(
-        cls, owner: str, design: Any, parameter: Varied, bounds: Bounds | None = None, *, count: int = 1, **more: Any
+        cls,
+        owner: str,
+        design: DesignOrRecipe | None,
+        parameter: Varied,
+        bounds: Bounds | None = None,
+        *,
+        count: int = 1,
+        **more: Any,
     ) -> Self:
         """The family of ``{name: (low, high)}``, or of one name and its bounds; `owner` was asked for `count` names."""
         given = _spelled(owner, "bounds", parameter, bounds, count, "(low, high)")
@@ -78,7 +86,14 @@ class Family:
 
     @classmethod
     def along(
-        cls, owner: str, design: Any, parameter: Varied, values: Any = None, *, count: int = 0, **more: Any
+        cls,
+        owner: str,
+        design: DesignOrRecipe | None,
+        parameter: Varied,
+        values: Any = None,
+        *,
+        count: int = 0,
+        **more: Any,
     ) -> Self:
         """The family of ``{name: values}``, or of one name and its values; `count` 0 takes any number of names."""
         given = _spelled(owner, "values", parameter, values, count, "values")
@@ -98,7 +113,7 @@ class Family:
         return as_system(self.one(*values))
 
 
-def is_recipe(design: Any) -> bool:
+def is_recipe(design: object) -> bool:
     """True for a function that makes designs or systems of values, False for a design."""
     return callable(design) and not hasattr(design, "replace")
 
@@ -110,7 +125,7 @@ def varied(design: Any, values: Mapping[str, Any]) -> Any:
     return design(*values.values()) if is_recipe(design) else design.replace(values)
 
 
-def unit_of(design: Any, path: str) -> str:
+def unit_of(design: object, path: str) -> str:
     """The unit of a parameter, for tables and figures; empty when nothing declares it."""
     return design.unit_of(path) if isinstance(design, DataSheet) else ""
 

@@ -10,11 +10,12 @@ with Matplotlib.
 '@a0'
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.words import number, quantity_label
 
@@ -71,17 +72,17 @@ class Bars:
     legend: Sequence[tuple[str, str]] = ()
 
 
-def line(x: Any, y: Any, look: str = "s0", name: str = "", column: str = "") -> Layer:
+def line(x: ArrayLike, y: ArrayLike, look: str = "s0", name: str = "", column: str = "") -> Layer:
     """A line through points, broken where a number is not finite; `column` names it in files where no legend does."""
     return _layer("line", look, name, column, x=x, y=y)
 
 
-def points(x: Any, y: Any, look: str = "here", r: float = 4.5, name: str = "", column: str = "") -> Layer:
+def points(x: ArrayLike, y: ArrayLike, look: str = "here", r: float = 4.5, name: str = "", column: str = "") -> Layer:
     """Points of `r` pixels."""
     return _layer("points", look, name, column, x=x, y=y, r=r)
 
 
-def hull(x: Any, low: Any, high: Any) -> Layer:
+def hull(x: ArrayLike, low: ArrayLike, high: ArrayLike) -> Layer:
     """The area between two lines: what a line too dense to draw looks like."""
     return _layer("hull", "s0", x=x, low=low, high=high)
 
@@ -111,7 +112,7 @@ def path(rings: Sequence[Any], column: str = "") -> Layer:
     return _layer("path", "boundary", column=column, rings=[np.round(ring, 9).tolist() for ring in rings])
 
 
-def heat(values: Any, scale: str, name: str, unit: str, **about: Any) -> dict[str, Any]:
+def heat(values: ArrayLike, scale: str, name: str, unit: str, **about: Any) -> dict[str, Any]:
     """A picture (rows from below, columns): `scale` is ``diverging``, ``sequential``, ``decades`` or ``mechanism``.
 
     Of `about`, ``words`` says what colours mean, ``names`` are those of codes, ``smooth`` blurs, and ``beside`` are
@@ -186,7 +187,7 @@ def whole(figure: FigureData | Bars) -> dict[str, Any]:
     return {**found, **axes, "size": SIZE}
 
 
-def _figure(figure: FigureData | Bars, take: Any) -> dict[str, Any]:
+def _figure(figure: FigureData | Bars, take: Callable[[Any], Any]) -> dict[str, Any]:
     if isinstance(figure, Bars):
         bars = [{**bar, "parts": [list(part) for part in bar["parts"]]} for bar in figure.bars]
         return {

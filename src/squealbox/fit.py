@@ -11,6 +11,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any, ClassVar
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.arguments import public
 from squealbox.friction import LAW_NAMES
@@ -94,7 +95,7 @@ class FrictionFit(Result):
 
 @public()
 def fit_friction(
-    speeds: Any, values: Any, law: str | Sequence[str] | None = None, *, level: float = 0.95
+    speeds: ArrayLike, values: ArrayLike, law: str | Sequence[str] | None = None, *, level: float = 0.95
 ) -> FrictionFit:
     """Fit friction laws to measured points mu(v).
 
@@ -132,7 +133,7 @@ def fit_friction(
     return FrictionFit(speeds=v, values=mu, curve_speeds=along, settings=settings, outcome=outcome, **arrays)
 
 
-def _points(speeds: Any, values: Any) -> tuple[Any, Any]:
+def _points(speeds: ArrayLike, values: ArrayLike) -> tuple[Any, Any]:
     try:
         v, mu = np.asarray(speeds, dtype=float), np.asarray(values, dtype=float)
     except (TypeError, ValueError) as error:
@@ -153,7 +154,9 @@ def _points(speeds: Any, values: Any) -> tuple[Any, Any]:
     return v, mu
 
 
-def _fitted(law: type[FrictionLaw], v: Any, mu: Any, along: Any, level: float, room: int) -> dict[str, Any]:
+def _fitted(
+    law: type[FrictionLaw], v: np.ndarray, mu: np.ndarray, along: np.ndarray, level: float, room: int
+) -> dict[str, Any]:
     from scipy.optimize import OptimizeWarning, curve_fit
     from scipy.stats import t as student
 
@@ -161,7 +164,7 @@ def _fitted(law: type[FrictionLaw], v: Any, mu: Any, along: Any, level: float, r
     count, about = len(guess), law.parameters()
     low = [about[name].low + 1e-12 * about[name].low_open for name in guess]
 
-    def curve(speed: Any, *p: float) -> Any:
+    def curve(speed: np.ndarray, *p: float) -> Any:
         return law.formula(speed, _coefficients(law, dict(zip(guess, p, strict=True))))
 
     nothing = np.full(along.shape, np.nan)
@@ -198,7 +201,7 @@ def _fitted(law: type[FrictionLaw], v: Any, mu: Any, along: Any, level: float, r
     }
 
 
-def _robust(curve: Callable[[Any], Any], p: Any, mu: Any, usual: Any) -> Any:
+def _robust(curve: Callable[[Any], Any], p: np.ndarray, mu: np.ndarray, usual: np.ndarray) -> Any:
     """The covariance of the coefficients, no smaller than what each point says when it is left out.
 
     The usual one, s^2 (J'J)^-1, takes the scatter of all points for that of the one point that carries a coefficient,

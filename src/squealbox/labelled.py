@@ -112,7 +112,7 @@ def about(unit: str, meaning: str) -> dict[str, str]:
     return {key: text for key, text in {"units": unit, "long_name": meaning}.items() if text}
 
 
-def put(file: "h5netcdf.File", name: str, dims: tuple[str, ...], values: Any, about: Mapping[str, str]) -> None:
+def put(file: "h5netcdf.File", name: str, dims: tuple[str, ...], values: np.ndarray, about: Mapping[str, str]) -> None:
     """Write an array as a variable of an open file."""
     if values.dtype.kind == "O":
         values = values.astype(str)
@@ -135,7 +135,12 @@ def put_attributes(
 
 
 def created(
-    file: "h5netcdf.File", name: str, dims: tuple[str, ...], dtype: Any, about: Mapping[str, str], width: int = 1
+    file: "h5netcdf.File",
+    name: str,
+    dims: tuple[str, ...],
+    dtype: np.dtype[Any],
+    about: Mapping[str, str],
+    width: int = 1,
 ) -> Any:
     """A variable of an open file that is to be filled; a letter of its words takes up to `width` bytes."""
     kind = {"U": np.dtype(f"S{max(1, dtype.itemsize // 4 * width)}"), "b": np.dtype("i1")}.get(dtype.kind, dtype)
@@ -146,13 +151,13 @@ def created(
     return variable
 
 
-def stored(values: Any) -> Any:
+def stored(values: np.ndarray) -> Any:
     """The values as such a variable takes them."""
     kind = values.dtype.kind
     return in_bytes(values) if kind == "U" else values.astype("i1") if kind == "b" else values
 
 
-def in_bytes(words: Any) -> Any:
+def in_bytes(words: np.ndarray) -> Any:
     """Words as UTF-8; all the same or plain ASCII, the usual cases, on the quick road."""
     if words.size and np.all(words == words.flat[0]):
         return np.full(words.shape, str(words.flat[0]).encode())

@@ -74,7 +74,7 @@ class FrictionLaw(DataSheet):
         return cls(**{name: max(known[name], low) for name, low in least.items()})
 
     @classmethod
-    def guess(cls, speeds: Any, values: Any) -> dict[str, float]:
+    def guess(cls, speeds: np.ndarray, values: np.ndarray) -> dict[str, float]:
         """Where a fit to measured points (speeds [m/s], coefficients) begins, by name of each number that is fitted.
 
         By the names of its numbers; empty for a law with others, which is then not fitted.
@@ -87,21 +87,21 @@ class FrictionLaw(DataSheet):
         """The coefficients p of the formula; p[0] is the static limit. Scalars, or arrays with leading axes."""
         raise NotImplementedError
 
-    def mu(self, velocity: Any) -> Any:
+    def mu(self, velocity: float | np.ndarray) -> Any:
         """Friction coefficient [-] at sliding velocity [m/s] of either sign; array in, array out."""
         return type(self).formula(self._speed(velocity), self.coefficients())
 
-    def slope_at(self, velocity: Any) -> Any:
+    def slope_at(self, velocity: float | np.ndarray) -> Any:
         """Slope dmu/d|v| [s/m] at sliding velocity [m/s] of either sign; negative means weakening."""
         return type(self).slope_formula(self._speed(velocity), self.coefficients())
 
-    def _speed(self, velocity: Any) -> Any:
+    def _speed(self, velocity: float | np.ndarray) -> Any:
         try:
             return np.abs(velocity)
         except TypeError as error:
             raise ParameterError(type(self).__name__, "velocity", velocity, "numbers [m/s]") from error
 
-    def direct_slope(self, velocity: Any) -> Any:
+    def direct_slope(self, velocity: float | np.ndarray) -> Any:
         """What the force follows the speed with at once [s/m]; all of the slope where there is no memory."""
         return self.slope_at(velocity)
 

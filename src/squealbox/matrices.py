@@ -2,10 +2,12 @@
 
 import sys
 from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.result import Outcome
 
@@ -17,19 +19,19 @@ class InvalidSystem(ValueError):
     """Matrices, vectors or contacts do not make a system; the message names array, shape and what was expected."""
 
 
-def is_sparse(value: Any) -> bool:
+def is_sparse(value: object) -> bool:
     """Whether it is a sparse array of SciPy: nothing is while those are not loaded, which takes a quarter second."""
     asked = getattr(sys.modules.get("scipy.sparse"), "issparse", None)  # None also while another thread loads them
     return asked is not None and bool(asked(value))
 
 
-def runs_of_true(inside: Any) -> list[tuple[int, int]]:
+def runs_of_true(inside: ArrayLike) -> list[tuple[int, int]]:
     """Indices of the first and the last of each run of True in a row (k,)."""
     edges = np.diff(np.r_[False, np.asarray(inside, dtype=bool), False].astype(int))
     return list(zip(np.flatnonzero(edges == 1).tolist(), (np.flatnonzero(edges == -1) - 1).tolist(), strict=True))
 
 
-def coupled(left: Any, factor: Any, right: Any) -> Any:
+def coupled(left: np.ndarray, factor: np.ndarray, right: np.ndarray) -> Any:
     """sum_c left_c factor_c right_c' of rows (..., contacts, n), shape (..., n, n); factor is (..., contacts)."""
     if len(np.shape(factor)) == 1 and len(factor) > FEW and np.ndim(left) == 2 and np.ndim(right) == 2:
         return (left * factor[:, None]).T @ right
@@ -39,13 +41,13 @@ def coupled(left: Any, factor: Any, right: Any) -> Any:
     return total
 
 
-def felt(rows: Any, q: Any) -> Any:
+def felt(rows: np.ndarray, q: np.ndarray) -> Any:
     """rows . q, (..., contacts)."""
     many = np.ndim(q) == 1 and np.ndim(rows) == 2 and len(rows) > FEW
     return rows @ q if many else np.sum(rows * q[..., None, :], axis=-1)
 
 
-def check_mass(mass: Any) -> None:
+def check_mass(mass: np.ndarray) -> None:
     """Symmetric to its own size, and no motion of negative kinetic energy."""
     largest = np.max(np.abs(mass), axis=(-1, -2), keepdims=True, initial=0.0)
     if np.any(np.abs(mass - np.swapaxes(mass, -1, -2)) > SYMMETRIC * largest):
@@ -64,7 +66,7 @@ def check_mass(mass: Any) -> None:
         )
 
 
-def checked_names(names: Any, size: int) -> tuple[str, ...]:
+def checked_names(names: Sequence[str], size: int) -> tuple[str, ...]:
     """Names of the degrees of freedom, by default q1, q2, ...; `InvalidSystem` for a wrong number or one twice."""
     if isinstance(names, str):
         raise InvalidSystem(f"names = {names!r}: expected a name for each degree of freedom, such as ('x', 'y')")
@@ -77,7 +79,7 @@ def checked_names(names: Any, size: int) -> tuple[str, ...]:
     return names
 
 
-def liveliest(sizes: Any, units: Any) -> int:
+def liveliest(sizes: ArrayLike, units: Sequence[str]) -> int:
     """The degree of freedom that moves most; a rotation only where nothing else moves: rad are no metres."""
     sizes = np.nan_to_num(np.asarray(sizes, dtype=float))
     moves = np.where(np.array([unit == "rad" for unit in units], dtype=bool), 0.0, sizes)
@@ -107,14 +109,14 @@ def check_width(name: str, array: np.ndarray, size: int) -> None:
         raise InvalidSystem(f"{name} has shape {array.shape}: expected (..., {size})")
 
 
-def outer(a: Any, b: Any) -> Any:
+def outer(a: ArrayLike, b: ArrayLike) -> Any:
     """a b' over leading axes."""
     return np.asarray(a)[..., :, None] * np.asarray(b)[..., None, :]
 
 
-def form(a: Any, matrix: Any, b: Any) -> Any:
+def form(a: ArrayLike, matrix: np.ndarray, b: ArrayLike) -> Any:
     """a . matrix b over leading axes; one matrix for all rows goes through one matrix product."""
-    product = np.asarray(b) @ matrix.T if np.ndim(matrix) == 2 else np.einsum("...ij,...j->...i", matrix, b)
+    product = np.asarray(b) @ matrix.T if np.ndim(matrix) == 2 else np.einsum("...ij,...j->...i", matrix, np.asarray(b))
     return np.sum(np.asarray(a) * product, axis=-1)
 
 

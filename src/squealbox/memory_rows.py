@@ -8,12 +8,15 @@ to the pencil, so its bristles are among the eigenvalues. Depends on: contacts, 
 """
 
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from squealbox.contacts import Contact, Contacts
 from squealbox.matrices import InvalidSystem
+
+if TYPE_CHECKING:
+    from squealbox.matrices import Equilibrium
 
 
 def remembering(contacts: Sequence[Contact] | Contacts) -> list[int]:
@@ -33,7 +36,7 @@ def no_memory(contacts: Sequence[Contact] | Contacts, what: str) -> None:
 
 
 def with_memory(
-    contacts: Sequence[Contact], matrices: tuple[Any, Any, Any], state: Any, closed: Any
+    contacts: Sequence[Contact], matrices: tuple[Any, Any, Any], state: "Equilibrium", closed: np.ndarray
 ) -> tuple[tuple[Any, Any, Any], Any]:
     """M, C_eff, K_eff (..., n, n) with the rows of the bristles at their end, and q (..., n) with their deflection.
 

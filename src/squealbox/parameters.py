@@ -216,7 +216,7 @@ class DataSheet:
             raise ParameterError(type(self).__name__, f"{name}.{key}", UNSAID, known_names(key, list(known)))
         return known.index(key)
 
-    def _check_known(self, path: str, head: str, name: str, value: Any) -> None:
+    def _check_known(self, path: str, head: str, name: str, value: object) -> None:
         if name not in self.field_names():
             raise ParameterError(type(self).__name__, path, value, known_names(head, self._known()))
 
@@ -268,7 +268,7 @@ class DataSheet:
                 yield from (leaf for leaf in inner if not _same(leaf[2], usual.get(leaf[0].rpartition(".")[2])))
 
 
-def members(value: Any) -> list[str]:
+def members(value: object) -> list[str]:
     """What each of several sheets in a field is called: its name where no other has it, else its number."""
     if not (isinstance(value, tuple) and value and all(isinstance(each, DataSheet) for each in value)):
         return []

@@ -12,9 +12,10 @@ from typing import Any
 import numpy as np
 
 from squealbox.family import Bounds, Family, Varied
-from squealbox.parameters import ParameterError
+from squealbox.parameters import DataSheet, ParameterError
 from squealbox.stability import eigenvalues_of, first_crossings, largest_growth, steady_sliding
 from squealbox.studies import Quantity
+from squealbox.system import DesignOrSystem
 from squealbox.transient import simulate_ensemble
 
 
@@ -31,7 +32,7 @@ def growth_rate(*, limit: float = 0.0, time: float = 0.0) -> Quantity:
     array([False, False])
     """
 
-    def largest(design: Any) -> Any:
+    def largest(design: DesignOrSystem) -> Any:
         growth, _, growing = largest_growth(steady_sliding(design, time))
         return np.where((growth > 0.0) & (growing == 0), 0.0, growth)
 
@@ -48,7 +49,7 @@ def damping_ratio(*, limit: float = 0.0, time: float = 0.0) -> Quantity:
     ()
     """
 
-    def least(design: Any) -> Any:
+    def least(design: DesignOrSystem) -> Any:
         values = eigenvalues_of(steady_sliding(design, time))
         with np.errstate(invalid="ignore", divide="ignore"):
             return np.min(-values.real / np.abs(values), axis=-1)
@@ -67,7 +68,7 @@ def critical_value(
     """
     about = Family.within("critical_value", None, parameter, bounds)
 
-    def critical(design: Any) -> Any:
+    def critical(design: DesignOrSystem) -> Any:
         return first_crossings(design, about.name, about.spans[0], points=points)
 
     return Quantity(critical, f"critical {about.name}", unit, limit, "below", meaning="where squeal begins")
@@ -86,7 +87,7 @@ def margin(parameter: Varied, bounds: Bounds | None = None, *, unit: str = "", p
     """
     about = Family.within("margin", None, parameter, bounds)
 
-    def distance(design: Any) -> Any:
+    def distance(design: DataSheet) -> Any:
         return first_crossings(design, about.name, about.spans[0], points=points) - design.value_of(about.name)
 
     return Quantity(distance, f"margin of {about.name}", unit, 0.0, "below", meaning="distance to the onset of squeal")
@@ -100,7 +101,7 @@ def amplitude(duration: float = 0.05, *, limit: float, contact: str = "exact", r
     By `simulate_ensemble` over `duration` [s]; NaN for a transient that does not reach its end.
     """
 
-    def largest(design: Any) -> Any:
+    def largest(design: DesignOrSystem) -> Any:
         many = simulate_ensemble(design, None, duration, observe=("amplitude",), contact=contact, rtol=rtol)
         return np.where(many.ended == "completed", np.max(many["amplitude"], axis=-1), np.nan)
 
@@ -123,13 +124,13 @@ def weighted_sum(weights: Mapping[str, float], *, name: str = "weighted sum", un
         raise ParameterError("weighted_sum", "weights", weights, "parameters with a number each, at least one")
     kept = {str(path): float(weight) for path, weight in weights.items()}
 
-    def total(design: Any) -> Any:
+    def total(design: DataSheet) -> Any:
         parts = np.broadcast_arrays(*(weight * np.asarray(design.value_of(path)) for path, weight in kept.items()))
         return np.broadcast_to(np.sum(parts, axis=0), _shape_of(design))
 
     return Quantity(total, name, unit, meaning="weighted sum of parameters")
 
 
-def _shape_of(design: Any) -> tuple[int, ...]:
+def _shape_of(design: DataSheet) -> tuple[int, ...]:
     """The leading axes of a design of arrays."""
     return np.broadcast_shapes(*(np.shape(value) for _, _, value in design.leaves() if np.ndim(value) == 1))

@@ -52,7 +52,7 @@ def _one(system: Any, time: float, linearise: Callable[..., Linearised]) -> Line
     return Linearised(np.zeros(K.shape), C, K, state)
 
 
-def _levelled(matrix: Any, size: int) -> Any:
+def _levelled(matrix: np.ndarray, size: int) -> Any:
     """The step with its states in units of one size; those of the displacements (size,) in front are kept."""
     from scipy.linalg import matrix_balance
 

@@ -12,6 +12,7 @@ from collections.abc import Mapping
 from typing import Any, Literal, get_args
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.distributions import Distribution, as_distribution
 from squealbox.parameters import DataSheet, ParameterError, known_names
@@ -79,7 +80,7 @@ class Scatter(DataSheet):
             found[name] = each.support if np.all(np.isfinite(each.support)) else inner
         return found
 
-    def from_uniform(self, u: Any) -> dict[str, Any]:
+    def from_uniform(self, u: np.ndarray) -> dict[str, Any]:
         """Parameters from independent uniform numbers `u` in (0, 1), shape (..., d): name to shape (...)."""
         from scipy.special import ndtri
 
@@ -88,7 +89,7 @@ class Scatter(DataSheet):
             return {name: each.ppf(u[..., i]) for i, (name, each) in enumerate(self.distributions.items())}
         return self.from_normal(ndtri(u))
 
-    def from_normal(self, z: Any) -> dict[str, Any]:
+    def from_normal(self, z: np.ndarray) -> dict[str, Any]:
         """Parameters from independent standard normal numbers `z`, shape (..., d): name to shape (...).
 
         With R = L L', the scores are L z. The upper tail is taken from the survival function, so that it is as exact
@@ -139,7 +140,7 @@ def as_scatter(given: Scattered) -> Scatter:
     return Scatter(given) if isinstance(given, Mapping) else given
 
 
-def unit_points(count: int, dimensions: int, method: Sampling, rng: Any) -> Any:
+def unit_points(count: int, dimensions: int, method: Sampling, rng: np.random.Generator) -> Any:
     """`count` points of the open unit cube, shape (count, dimensions); `rng` is a NumPy generator."""
     from scipy.stats import qmc
 
@@ -156,7 +157,7 @@ def unit_points(count: int, dimensions: int, method: Sampling, rng: Any) -> Any:
     return points + 0.5 ** (BITS + 1)  # the middle of each cell, never 0
 
 
-def _matrix(given: Any, names: list[str]) -> Any:
+def _matrix(given: Mapping[tuple[str, str], float] | ArrayLike | None, names: list[str]) -> Any:
     """The correlation matrix from pairs or from itself, read-only."""
     size = len(names)
     matrix = np.eye(size)
@@ -183,7 +184,7 @@ def _matrix(given: Any, names: list[str]) -> Any:
     return matrix
 
 
-def _pair(pair: Any, names: list[str]) -> tuple[int, int]:
+def _pair(pair: object, names: list[str]) -> tuple[int, int]:
     if not isinstance(pair, tuple) or len(pair) != 2:
         raise ParameterError("Scatter", "correlation", pair, "pairs of names such as ('k1', 'k2')")
     for name in pair:
@@ -194,7 +195,7 @@ def _pair(pair: Any, names: list[str]) -> tuple[int, int]:
     return names.index(pair[0]), names.index(pair[1])
 
 
-def _coefficient(pair: tuple[str, str], value: Any) -> float:
+def _coefficient(pair: tuple[str, str], value: float | np.ndarray) -> float:
     number = float(value) if isinstance(value, (int, float, np.number)) and not isinstance(value, bool) else np.nan
     if not -1.0 < number < 1.0:
         raise ParameterError("Scatter", f"correlation of {pair[0]} and {pair[1]}", value, "a number in (-1, 1)")

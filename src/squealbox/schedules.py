@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterable
 from typing import Any, ClassVar
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.parameters import DataSheet, ParameterError, parameter
 from squealbox.registers import name_of
@@ -31,15 +32,15 @@ class Schedule(DataSheet):
         """The coefficients p of the formula."""
         raise self._lacks("coefficients", "a method that gives p of the formulas")
 
-    def value(self, time: Any) -> Any:
+    def value(self, time: ArrayLike) -> Any:
         """The value at `time` [s]."""
         return self._of("formula", "value", time)
 
-    def rate(self, time: Any) -> Any:
+    def rate(self, time: ArrayLike) -> Any:
         """The time derivative at `time` [s]; at a kink, the one from the right."""
         return self._of("rate_formula", "rate", time)
 
-    def _of(self, name: str, method: str, time: Any) -> Any:
+    def _of(self, name: str, method: str, time: ArrayLike) -> Any:
         formula = getattr(type(self), name, None)
         if formula is None:
             raise self._lacks(name, f"a function of (t, p), or a method {method}(time)")
@@ -60,7 +61,7 @@ class Schedule(DataSheet):
         """The schedule as a sum of factor times simple schedule."""
         return ((1.0, self),)
 
-    def __mul__(self, factor: Any) -> "Sum":
+    def __mul__(self, factor: "ArrayLike | Schedule") -> "Sum":
         if isinstance(factor, Schedule):
             raise ParameterError(
                 type(self).__name__, "factor", factor, "a number or an array: products of schedules are not compiled"
@@ -70,7 +71,7 @@ class Schedule(DataSheet):
 
     __rmul__ = __mul__
 
-    def __add__(self, other: Any) -> "Sum":
+    def __add__(self, other: "ArrayLike | Schedule") -> "Sum":
         return Sum((*self.terms(), *as_schedule(other).terms()))
 
     __radd__ = __add__
@@ -88,10 +89,10 @@ class Sum(Schedule):
         parts = tuple((np.asarray(weight, dtype=float), part) for weight, part in self.parts)
         object.__setattr__(self, "parts", parts)
 
-    def value(self, time: Any) -> Any:
+    def value(self, time: ArrayLike) -> Any:
         return sum(weight * part.value(time) for weight, part in self.parts)
 
-    def rate(self, time: Any) -> Any:
+    def rate(self, time: ArrayLike) -> Any:
         return sum(weight * part.rate(time) for weight, part in self.parts)
 
     def breaks(self) -> tuple[Any, ...]:
@@ -258,10 +259,10 @@ class Table(Schedule):
         if values.shape != times.shape:
             raise ParameterError("Table", "values", self.values, f"{times.size} values, one for each instant")
 
-    def value(self, time: Any) -> Any:
+    def value(self, time: ArrayLike) -> Any:
         return np.interp(np.asarray(time, dtype=float), self.times, self.values)
 
-    def rate(self, time: Any) -> Any:
+    def rate(self, time: ArrayLike) -> Any:
         lines = np.r_[0.0, np.diff(self.values) / np.diff(self.times), 0.0]
         return lines[np.searchsorted(self.times, np.asarray(time, dtype=float), side="right")]
 
@@ -343,6 +344,6 @@ def swinging(parts: dict[str, list[Any]]) -> list[str]:
     return [name for name, values in parts.items() if any(isinstance(v, Schedule) and never_settles(v) for v in values)]
 
 
-def value_at(value: Any, time: Any) -> Any:
+def value_at(value: ArrayLike | Schedule, time: ArrayLike) -> Any:
     """The value of a number or a schedule at `time` [s]; array in, array out."""
     return value.value(time) if isinstance(value, Schedule) else value

@@ -247,7 +247,7 @@ def drawing_of(design: Any) -> Shapes:
     return shapes
 
 
-def _moved(points: Any, moves: Moves, size: int) -> Any:
+def _moved(points: np.ndarray, moves: Moves, size: int) -> Any:
     """What `moves` adds to points (k, 2) for each of `size` degrees of freedom, (size, k, 2)."""
     found = np.zeros((size, len(points), 2))
     for dof, way in moves.items():
@@ -255,7 +255,7 @@ def _moved(points: Any, moves: Moves, size: int) -> Any:
     return found
 
 
-def _around(angles: Any) -> Any:
+def _around(angles: Sequence[float] | np.ndarray) -> Any:
     """Points of the unit circle, (k, 2)."""
     return np.stack([np.cos(angles), np.sin(angles)], axis=1)
 

@@ -10,13 +10,17 @@ contacts and friction change K by rows of the contacts alone. Directions tried i
 Where this does not settle, the matrix of the step is factored itself.
 """
 
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import scipy
 
 from squealbox.contacts import Contacts
 from squealbox.factorisation import Factor, SingularMatrix, factor
+from squealbox.matrices import Equilibrium
+
+if TYPE_CHECKING:
+    from scipy.sparse import sparray
 
 ROUGH, FINE = 1e-2, 1e-11  # of a step's residual: what is left of it while the set of open contacts changes, and after
 FAIR = 1e-7  # what a fine step leaves at most, however close to balance it begins
@@ -52,7 +56,7 @@ class SlidingState(NamedTuple):
 
 
 def sliding_state(
-    stiffness: Any, load: Any, contacts: Contacts, time: float, start: Nearby | None = None
+    stiffness: "sparray", load: np.ndarray, contacts: Contacts, time: float, start: Nearby | None = None
 ) -> SlidingState:
     """Steady sliding at `time` [s], looked for from that of a similar brake where it is known.
 
@@ -67,7 +71,7 @@ def sliding_state(
     return found
 
 
-def _search(steps: "_Steps", q: Any, load: Any, time: float, most: int) -> SlidingState:
+def _search(steps: "_Steps", q: np.ndarray, load: np.ndarray, time: float, most: int) -> SlidingState:
     stiffness, contacts = steps.stiffness, steps.contacts
     speed, preload = contacts.at("V", time), contacts.at("N0", time)
     mu, _ = contacts.friction(speed)
@@ -98,7 +102,7 @@ def _search(steps: "_Steps", q: Any, load: Any, time: float, most: int) -> Slidi
     return SlidingState(q, _pressing(normal, closed), speed, mu, False, False)
 
 
-def at_rest(stiffness: Any) -> Nearby:
+def at_rest(stiffness: "sparray") -> Nearby:
     """No displacement, and the factor of the stiffness with every contact closed."""
     try:
         return Nearby(np.zeros(stiffness.shape[0]), factor(stiffness))
@@ -106,7 +110,7 @@ def at_rest(stiffness: Any) -> Nearby:
         return Nearby(np.zeros(stiffness.shape[0]), None)
 
 
-def _pressing(normal: Any, closed: Any) -> Any:
+def _pressing(normal: np.ndarray, closed: np.ndarray) -> Any:
     return np.where(closed, normal, 0.0)
 
 
@@ -116,18 +120,20 @@ class _Steps:
     Every direction z = B^-1 r that was tried is kept with K z and N z: for other contacts J z is had from these.
     """
 
-    def __init__(self, stiffness: Any, contacts: Contacts, base: Factor | None) -> None:
+    def __init__(self, stiffness: "sparray", contacts: Contacts, base: Factor | None) -> None:
         self.stiffness, self.contacts, self.base = stiffness, contacts, base
         self.tried: list[tuple[Any, Any, Any]] = []
 
-    def solved(self, drag: Any, closed: Any, residual: Any, accuracy: float) -> Any:
+    def solved(self, drag: np.ndarray, closed: np.ndarray, residual: np.ndarray, accuracy: float) -> Any:
         found = None if self.base is None else self._iterated(self.base, drag, closed, residual, accuracy)
         if found is not None:
             return found
         self.base = None  # it will not settle at the next step either
         return factor(stiffness_of(self.stiffness, self.contacts, drag, closed)).solve(residual)
 
-    def _iterated(self, base: Factor, drag: Any, closed: Any, residual: Any, accuracy: float) -> Any:
+    def _iterated(
+        self, base: Factor, drag: np.ndarray, closed: np.ndarray, residual: np.ndarray, accuracy: float
+    ) -> Any:
         """By conjugate residuals; None where they do not become small."""
         small = accuracy * np.linalg.norm(residual)
         known, images = self._remembered(drag, closed)
@@ -155,7 +161,7 @@ class _Steps:
             step, left = step + share * room[0][:, made], left - share * room[1][:, made]
         return None
 
-    def _remembered(self, drag: Any, closed: Any) -> tuple[Any, Any]:
+    def _remembered(self, drag: np.ndarray, closed: np.ndarray) -> tuple[Any, Any]:
         """Combinations of the directions tried before, whose images J z are orthonormal, and those images."""
         if not self.tried:
             return np.zeros((self.stiffness.shape[0], 0)), np.zeros((self.stiffness.shape[0], 0))
@@ -168,14 +174,14 @@ class _Steps:
         turns = turns[:, keep] / np.sqrt(values[keep]) / lengths[:, None]
         return z @ turns, images @ turns
 
-    def _image(self, pushed: Any, felt: Any, drag: Any, closed: Any) -> Any:
+    def _image(self, pushed: np.ndarray, felt: np.ndarray, drag: np.ndarray, closed: np.ndarray) -> Any:
         found = pushed - self.contacts.d.T @ (drag * felt)
         if self.contacts.normal is not None and not np.all(closed):
             found -= self.contacts.normal.T @ np.where(closed, 0.0, felt)
         return found
 
 
-def linearised(damping: Any, stiffness: Any, contacts: Contacts, state: Any) -> tuple[Any, Any]:
+def linearised(damping: "sparray", stiffness: "sparray", contacts: Contacts, state: Equilibrium) -> tuple[Any, Any]:
     """C_eff and K_eff (n, n) about an `Equilibrium`."""
     closed = (state.normal_force > 0.0) | ~contacts.unilateral
     _, slope = contacts.friction(state.sliding_speed)
@@ -186,7 +192,7 @@ def linearised(damping: Any, stiffness: Any, contacts: Contacts, state: Any) -> 
     return scipy.sparse.csr_array(found), stiffness_of(stiffness, contacts, coupling, closed)
 
 
-def stiffness_of(stiffness: Any, contacts: Contacts, coupling: Any, closed: Any) -> Any:
+def stiffness_of(stiffness: "sparray", contacts: Contacts, coupling: np.ndarray, closed: np.ndarray) -> Any:
     """K less D' diag(mu sgn V) N of the closed contacts, and less R' N of the open ones."""
     found, sliding = stiffness, np.where(closed, coupling, 0.0)
     if np.any(sliding):
@@ -196,17 +202,17 @@ def stiffness_of(stiffness: Any, contacts: Contacts, coupling: Any, closed: Any)
     return scipy.sparse.csr_array(found)
 
 
-def damping_along(contacts: Contacts, weight: Any) -> Any:
+def damping_along(contacts: Contacts, weight: np.ndarray) -> Any:
     """D' diag(N mu'(V)) T: what a slope of friction adds to the damping."""
     return scipy.sparse.csr_array(contacts.d.T @ _scaled(contacts.t, weight))
 
 
-def damping_across(contacts: Contacts, weight: Any) -> Any:
+def damping_across(contacts: Contacts, weight: np.ndarray) -> Any:
     """A' diag(mu N / |V|) A: what friction that turns with the relative velocity adds to the damping."""
     if contacts.across is None:
         return scipy.sparse.csr_array((contacts.n.shape[1],) * 2)
     return scipy.sparse.csr_array(contacts.across.T @ _scaled(contacts.across, weight))
 
 
-def _scaled(rows: Any, factors: Any) -> Any:
+def _scaled(rows: "sparray", factors: np.ndarray) -> Any:
     return scipy.sparse.diags_array(factors) @ rows

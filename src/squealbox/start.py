@@ -12,20 +12,40 @@ Modes are counted from 1, as tables and figures count them. Where nobody says ho
 swings by `SHARE` of it: small enough for the linear theory. Depends on: parameters, schedules, stability, system.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.parameters import ParameterError
 from squealbox.schedules import value_at
-from squealbox.system import InvalidSystem, System, equilibrium
+from squealbox.system import DesignOrSystem, InvalidSystem, System, equilibrium
 
 SHARE = 0.01  # of the sliding speed
 NO_SLIDING = "there is no steady sliding to start from"
 SMALL = 1e-6  # m, where no contact slides
 WORDS = '"rest" or "sliding", "mode 1" or {"mode": 1, "amplitude": 1e-6}, a Mode, a Trajectory or a Cycle'
+
+
+class WithStart(Protocol):
+    """A mode or a cycle: it has a state where it begins."""
+
+    @property
+    def start(self) -> Any:
+        """The state, or what makes it of an amplitude."""
+
+
+class WithEnd(Protocol):
+    """A trajectory: it has a state where it ended."""
+
+    @property
+    def end(self) -> Any:
+        """The state."""
+
+
+StartLike = str | Mapping[str, Any] | Sequence[ArrayLike] | WithStart | WithEnd | None  # the spellings above
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,7 +62,7 @@ class Start:
 
     @classmethod
     def of(
-        cls, owner: str, start: Any, system: System, time: float = 0.0, *, modes_of: Any = None,
+        cls, owner: str, start: Any, system: System, time: float = 0.0, *, modes_of: DesignOrSystem | None = None,
         members: tuple[tuple[int, ...], slice] | None = None, rows: int | None = None, name: str = "start",
         share: float = SHARE,
     ) -> "Start":  # fmt: skip
@@ -114,7 +134,7 @@ def sliding(system: System, time: float = 0.0) -> Any:
     return state.q
 
 
-def in_words(start: Any) -> dict[str, Any] | None:
+def in_words(start: StartLike) -> dict[str, Any] | None:
     """A start in a mode, "mode 2" or {"mode": 2, "amplitude": ...}, as the latter; None for any other."""
     if isinstance(start, str):
         word, _, number = start.strip().partition(" ")
@@ -124,13 +144,13 @@ def in_words(start: Any) -> dict[str, Any] | None:
     return dict(start) if isinstance(start, Mapping) and set(start) - {"amplitude"} == {"mode"} else None
 
 
-def beside(steady: Any, eigenvalue: Any, shape: Any, amplitude: Any) -> tuple[Any, Any]:
+def beside(steady: np.ndarray, eigenvalue: ArrayLike, shape: np.ndarray, amplitude: ArrayLike) -> tuple[Any, Any]:
     """q and q' (..., n) of steady sliding with a mode of that amplitude [m], |u| = 1."""
     turned = np.asarray(amplitude)[..., None] * shape
     return steady + turned.real, (np.asarray(eigenvalue)[..., None] * turned).real
 
 
-def visible(system: System, eigenvalue: Any, shape: Any, share: float = SHARE) -> Any:
+def visible(system: System, eigenvalue: ArrayLike, shape: np.ndarray, share: float = SHARE) -> Any:
     """Amplitude [m] of a mode (..., n) at which the sliding speed of some contact swings by a share of it."""
     found: Any = np.inf
     for contact in system.contacts:
@@ -141,7 +161,9 @@ def visible(system: System, eigenvalue: Any, shape: Any, share: float = SHARE) -
     return np.where(np.isfinite(found), share * found, SMALL)
 
 
-def _in_mode(owner: str, name: str, asked: Mapping[str, Any], design: Any, time: float) -> tuple[Any, Any, Any]:
+def _in_mode(
+    owner: str, name: str, asked: Mapping[str, Any], design: DesignOrSystem, time: float
+) -> tuple[Any, Any, Any]:
     """Eigenvalue (...), shape and steady sliding (..., rows) of the mode asked for."""
     from squealbox.stability import complex_modes
 
@@ -163,7 +185,7 @@ def _in_mode(owner: str, name: str, asked: Mapping[str, Any], design: Any, time:
     return value, np.take_along_axis(modes.right, index[..., None, None], axis=-1)[..., 0], modes.steady
 
 
-def _padded(x: Any, size: int) -> Any:
+def _padded(x: np.ndarray, size: int) -> Any:
     """States (..., k) with zeros behind them, (..., size)."""
     return np.concatenate([x, np.zeros((*x.shape[:-1], size - x.shape[-1]))], axis=-1)
 

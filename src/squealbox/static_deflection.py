@@ -8,6 +8,7 @@ no contact feels it, the deflection is known but for it, and the one of least le
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.result import COMPLETED, Outcome
 
@@ -15,7 +16,7 @@ RIGID = 1e-14  # singular values below this share of the largest (rows and colum
 FELT = 1e-9  # share of the forces, and of a contact's sensitivity, below which it is round-off that feels a motion
 
 
-def solve(matrix: Any, right: Any) -> tuple[Any, Any]:
+def solve(matrix: np.ndarray, right: np.ndarray) -> tuple[Any, Any]:
     """Solutions (..., n), zero where the matrix (..., n, n) is singular to working precision, and where it is."""
     limit = 1.0 / np.finfo(float).eps
     with np.errstate(all="ignore"):
@@ -28,7 +29,7 @@ def solve(matrix: Any, right: Any) -> tuple[Any, Any]:
     return np.where(singular[..., None], 0.0, found), singular
 
 
-def levelled(matrices: Any) -> tuple[Any, Any, Any]:
+def levelled(matrices: np.ndarray) -> tuple[Any, Any, Any]:
     """Matrices (..., n, n) whose rows and columns have a largest entry of about 1, and the factors (..., n) for it.
 
     Source: Ruiz 2001, A scaling algorithm to equilibrate both rows and columns norms in matrices, RAL-TR-2001-034.
@@ -44,7 +45,12 @@ def levelled(matrices: Any) -> tuple[Any, Any, Any]:
 
 
 def modulo_rigid_motion(
-    matrix: Any, right: Any, feelers: Any, forces: Any, found: Any, singular: Any
+    matrix: np.ndarray,
+    right: np.ndarray,
+    feelers: np.ndarray,
+    forces: float | np.ndarray,
+    found: ArrayLike,
+    singular: ArrayLike,
 ) -> tuple[Any, Any, Any, Any]:
     """Deflections of least length where a matrix is singular only by motions nobody feels and no force drives.
 
@@ -84,7 +90,13 @@ def modulo_rigid_motion(
     return found, left, floating, pushed
 
 
-def ended(singular: Any, sliding: Any, converged: Any, speed: Any, pushed: Any = False) -> Outcome:
+def ended(
+    singular: np.ndarray,
+    sliding: bool | np.bool_ | np.ndarray,
+    converged: bool | np.bool_ | np.ndarray,
+    speed: np.ndarray,
+    pushed: bool | np.bool_ | np.ndarray = False,
+) -> Outcome:
     """How the search for steady sliding ended, from truth values (...); with leading axes the worst entry is named."""
     if np.any(singular):
         message = "K_eff is singular: the friction-coupled stiffness has no unique static deflection"
@@ -102,7 +114,7 @@ def ended(singular: Any, sliding: Any, converged: Any, speed: Any, pushed: Any =
     return Outcome(COMPLETED)
 
 
-def _condition(matrix: Any) -> Any:
+def _condition(matrix: np.ndarray) -> Any:
     """Condition number by the inverse (1-norm); of 2 x 2 in closed form (Frobenius), many times faster on a map."""
     if matrix.shape[-1] != 2:
         return np.linalg.cond(matrix, 1)

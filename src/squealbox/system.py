@@ -23,7 +23,7 @@ import numpy as np
 import scipy
 
 from squealbox import sampled_sliding, sparse_sliding
-from squealbox.arguments import design
+from squealbox.arguments import Brake, design
 from squealbox.contacts import ROWS, Contact, Contacts, dense_rows, numbered, sparse_matrix
 from squealbox.factorisation import is_symmetric
 from squealbox.loops import Loop, check_loops, folded, near_sliding
@@ -193,7 +193,10 @@ class System(DataSheet):
         return tuple((law, tuple(contacts)) for law, contacts in found.items())
 
 
-def as_system(design_or_system: Any, *, linear: bool = False, plane: bool = False) -> System:
+DesignOrSystem = Brake | System
+
+
+def as_system(design_or_system: DesignOrSystem, *, linear: bool = False, plane: bool = False) -> System:
     """The system itself, or what a design's ``system()`` makes.
 
     A `linear` analysis, about steady sliding, takes sparse matrices and contacts that slide in a plane, a motion that
@@ -221,11 +224,10 @@ def _system_of(given: Any) -> System:
         return folded(given)
     if isinstance(given, type) or not callable(getattr(given, "system", None)):
         raise InvalidSystem(f"{shown(given)}: expected {design(given) or 'a System or a design'}")
-    system: System = given.system()
-    return folded(system)
+    return folded(given.system())
 
 
-def _checked_contact(contact: Any, i: int, size: int) -> Contact:
+def _checked_contact(contact: object, i: int, size: int) -> Contact:
     if not isinstance(contact, Contact):
         raise InvalidSystem(f"contacts[{i}] = {contact!r}: expected a Contact")
     for field in ROWS:
@@ -234,31 +236,31 @@ def _checked_contact(contact: Any, i: int, size: int) -> Contact:
     return contact
 
 
-def equilibrium(system: Any, time: float = 0.0, start: sparse_sliding.Nearby | None = None) -> Equilibrium:
+def equilibrium(system: DesignOrSystem, time: float = 0.0, start: sparse_sliding.Nearby | None = None) -> Equilibrium:
     """Steady sliding q0 at the load, speeds and normal forces of `time` [s].
 
     Newton on r(q) = K q - f - sum mu sgn(V) d N(q) [- normal min(N, 0) for unilateral contacts]. Without unilateral
     contacts r is linear in q, because mu depends on V alone, and one step is exact; with them r is piecewise linear and
     each step changes the set of open contacts. A sparse search may begin at the `start` of a similar brake.
     """
-    system = near_sliding(system if isinstance(system, System) else as_system(system, linear=True), held=True)
-    if system.is_sparse:
-        return _sparse_equilibrium(system, time, start)
-    no_rigid_contact(system, "steady sliding")
-    shape, size = system.shape, system.size
-    force, speed, mu = _sliding(system, time)
+    near: System = near_sliding(system if isinstance(system, System) else as_system(system, linear=True), held=True)
+    if near.is_sparse:
+        return _sparse_equilibrium(near, time, start)
+    no_rigid_contact(near, "steady sliding")
+    shape, size = near.shape, near.size
+    force, speed, mu = _sliding(near, time)
     q = np.zeros((*shape, size))
-    base = np.broadcast_to(system.K, (*shape, size, size))
+    base = np.broadcast_to(near.K, (*shape, size, size))
     singular, pushed, converged = (np.zeros(shape, dtype=bool) for _ in range(3))
     floating = np.zeros(shape, dtype=int)
     scale = np.max(np.abs(base), axis=(-1, -2))
-    forces = np.max(np.abs(value_at(system.load, time)), axis=-1) + np.max(np.abs(force), axis=-1, initial=0.0)
-    linear = not any(contact.unilateral for contact in system.contacts)
-    for _ in range(2 + 2 * len(system.contacts) ** 2):
-        residual, jacobian = _residual(system, time, q, force, speed, mu, base)
+    forces = np.max(np.abs(value_at(near.load, time)), axis=-1) + np.max(np.abs(force), axis=-1, initial=0.0)
+    linear = not any(contact.unilateral for contact in near.contacts)
+    for _ in range(2 + 2 * len(near.contacts) ** 2):
+        residual, jacobian = _residual(near, time, q, (force, speed, mu), base)
         step, bad = solve(jacobian, residual)
         if np.any(bad):
-            step, bad, floating, pushed = modulo_rigid_motion(jacobian, residual, system.rows[0], forces, step, bad)
+            step, bad, floating, pushed = modulo_rigid_motion(jacobian, residual, near.rows[0], forces, step, bad)
         singular |= bad
         q = q - step
         if linear:  # one step is exact
@@ -270,43 +272,42 @@ def equilibrium(system: Any, time: float = 0.0, start: sparse_sliding.Nearby | N
             break
     sliding = np.all(speed != 0.0, axis=-1)
     exists = converged & ~singular & sliding
-    normal = _normal_forces(system, force, q)
     outcome = ended(singular, sliding, converged, speed, pushed)
-    return Equilibrium(q, normal, speed, mu, exists, outcome, np.where(exists, floating, 0))
+    return Equilibrium(q, _normal_forces(near, force, q), speed, mu, exists, outcome, np.where(exists, floating, 0))
 
 
-def linearise(system: Any, time: float = 0.0, start: sparse_sliding.Nearby | None = None) -> Linearised:
+def linearise(system: DesignOrSystem, time: float = 0.0, start: sparse_sliding.Nearby | None = None) -> Linearised:
     """K_eff and C_eff about steady sliding at `time` [s]; an open contact only takes its stiffness out."""
     system = system if isinstance(system, System) else as_system(system, linear=True)
     if any(loop.sampling is not None for loop in system.loops):
         return sampled_sliding.linearised(system, time, linearise)
-    system = near_sliding(system)
-    state = equilibrium(system, time, start)
-    if system.is_sparse:
-        return Linearised(system.M, *_sparse_linearised(system, state), state)
-    shape, size = system.shape, system.size
-    moving = swinging({"load": [system.load], **{x: [getattr(c, x) for c in system.contacts] for x in ("V", "N0")}})
+    near: System = near_sliding(system)
+    state = equilibrium(near, time, start)
+    if near.is_sparse:
+        return Linearised(near.M, *_sparse_linearised(near, state), state)
+    shape, size = near.shape, near.size
+    moving = swinging({"load": [near.load], **{x: [getattr(c, x) for c in near.contacts] for x in ("V", "N0")}})
     if moving:  # it moves even at rest: nothing stands still to be linearised about
         said = Outcome("moving", MOVES.format(" and ".join(moving)))
         state = replace(state, exists=np.zeros(shape, dtype=bool), outcome=said)
-    damping, stiffness = (np.array(np.broadcast_to(x, (*shape, size, size))) for x in (system.C, system.K))
-    if system.contacts:
-        n, d, t, reaction = system.rows
-        lifts = np.array([contact.unilateral for contact in system.contacts])
+    damping, stiffness = (np.array(np.broadcast_to(x, (*shape, size, size))) for x in (near.C, near.K))
+    if near.contacts:
+        n, d, t, reaction = near.rows
+        lifts = np.array([contact.unilateral for contact in near.contacts])
         closed = ~lifts | (state.normal_force > 0.0)
-        slope = _by_law(system, lambda law, speed: law.direct_slope(speed), state.sliding_speed)
+        slope = _by_law(near, lambda law, speed: law.direct_slope(speed), state.sliding_speed)
         damping += coupled(d, np.where(closed, state.normal_force * slope, 0.0), t)
         stiffness -= coupled(d, np.where(closed, state.friction * np.sign(state.sliding_speed), 0.0), n)
-        across = system.across
+        across = near.across
         if across is not None:
             with np.errstate(divide="ignore", invalid="ignore"):  # V = 0: there is no steady sliding
                 turning = state.friction * state.normal_force / np.abs(state.sliding_speed)
             damping += coupled(across, np.where(closed, turning, 0.0), across)
         if np.any(lifts):
             stiffness -= coupled(reaction, np.where(closed, 0.0, 1.0), n)
-    mass = np.broadcast_to(system.M, stiffness.shape)
-    if remembering(system.contacts):
-        (mass, damping, stiffness), q = with_memory(system.contacts, (mass, damping, stiffness), state, closed)
+    mass = np.broadcast_to(near.M, stiffness.shape)
+    if remembering(near.contacts):
+        (mass, damping, stiffness), q = with_memory(near.contacts, (mass, damping, stiffness), state, closed)
         state = replace(state, q=q)
     missing = ~state.exists[..., None, None]
     return Linearised(mass, np.where(missing, np.nan, damping), np.where(missing, np.nan, stiffness), state)
@@ -316,12 +317,11 @@ def no_rigid_contact(system: System, what: str) -> None:
     """Raise `InvalidSystem` when a contact is rigid: `what` needs its normal force as a function of the state."""
     for i, contact in enumerate(system.contacts):
         if contact.rigid:
-            raise InvalidSystem(
-                f"contacts[{i}] is rigid: {what} needs N = N0 + n . q; give the contact a stiffness instead"
-            )
+            rigid = f"contacts[{i}] is rigid"
+            raise InvalidSystem(f"{rigid}: {what} needs N = N0 + n . q; give the contact a stiffness instead")
 
 
-def contact_state(system: System, time: Any, q: Any, qd: Any) -> tuple[Any, Any, Any]:
+def contact_state(system: System, time: float | np.ndarray, q: np.ndarray, qd: np.ndarray) -> tuple[Any, Any, Any]:
     """Normal force N [N], sliding velocity v [m/s] and sliding friction force mu sgn(v) N [N] of each contact.
 
     `q` and `qd` are (..., n) at instants `time` (...); the results are (..., contacts). Where v = 0 the force is 0:
@@ -344,9 +344,8 @@ def contact_state(system: System, time: Any, q: Any, qd: Any) -> tuple[Any, Any,
 def _sparse_equilibrium(system: System, time: float, start: sparse_sliding.Nearby | None) -> Equilibrium:
     found = sparse_sliding.sliding_state(system.K, value_at(system.load, time), system.contacts, time, start)
     sliding, singular, settled = np.all(found.speed != 0.0), np.array(found.singular), np.array(found.settled)
-    exists = settled & ~singular & sliding
     outcome = ended(singular, sliding, settled, found.speed)
-    return Equilibrium(found.q, found.normal, found.speed, found.mu, exists, outcome)
+    return Equilibrium(found.q, found.normal, found.speed, found.mu, settled & ~singular & sliding, outcome)
 
 
 def _sparse_linearised(system: System, state: Equilibrium) -> tuple[Any, Any]:
@@ -366,7 +365,7 @@ def _sliding(system: System, time: float) -> tuple[Any, Any, Any]:
     return force, speed, _by_law(system, lambda law, speed: law.mu(speed), speed)
 
 
-def _by_law(system: System, ask: Callable[[Any, Any], Any], speed: Any) -> Any:
+def _by_law(system: System, ask: Callable[[Any, Any], Any], speed: np.ndarray) -> Any:
     """What `ask`(law, speeds) says of each contact, (..., contacts): contacts of one law together."""
     found = np.zeros(np.shape(speed))
     for law, contacts in system.alike:
@@ -376,7 +375,8 @@ def _by_law(system: System, ask: Callable[[Any, Any], Any], speed: Any) -> Any:
     return found
 
 
-def _residual(system: System, time: float, q: Any, force: Any, speed: Any, mu: Any, base: Any) -> tuple[Any, Any]:
+def _residual(system: System, time: float, q: np.ndarray, sliding: tuple[Any, Any, Any], base: Any) -> tuple[Any, Any]:
+    force, speed, mu = sliding
     residual = np.einsum("...ij,...j->...i", base, q) - value_at(system.load, time)
     if not system.contacts:
         return residual, np.array(base)
@@ -393,7 +393,7 @@ def _residual(system: System, time: float, q: Any, force: Any, speed: Any, mu: A
     return residual, jacobian
 
 
-def _normal_forces(system: System, force: Any, q: Any) -> Any:
+def _normal_forces(system: System, force: np.ndarray, q: np.ndarray) -> Any:
     if not system.contacts:
         return np.zeros((*system.shape, 0))
     normal = force + felt(system.rows[0], q)

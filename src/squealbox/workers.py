@@ -24,7 +24,7 @@ import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
 from queue import Empty, SimpleQueue
-from typing import Any, NamedTuple, Self
+from typing import Any, BinaryIO, NamedTuple, Self
 
 STARTING = 60.0  # s within which a process must be ready
 LOOK = 0.5  # s between two looks at the clock
@@ -84,7 +84,7 @@ class Worker:
         threading.Thread(target=self._listen, daemon=True).start()
         self._send((sys.path, function, given, nice, idle))
 
-    def ask(self, *question: Any, task: Any = True, limit: float = float("inf")) -> None:
+    def ask(self, *question: object, task: object = True, limit: float = float("inf")) -> None:
         """Ask something, to be answered within `limit` seconds; `task` is what the caller knows it by."""
         self.task, self.limit, self._mark[:] = task, limit, _MARK.pack(*NOWHERE)
         if self.ready:
@@ -105,7 +105,7 @@ class Worker:
         how = signal.Signals(-code).name if code < 0 else f"exit code {code}"
         return Ended(": ".join([how, *printed.splitlines()[-1:]]), at, printed, late)
 
-    def _send(self, message: Any) -> None:
+    def _send(self, message: object) -> None:
         with suppress(OSError):  # it is gone, and will be heard of
             pickle.dump(message, self._process.stdin)
             self._process.stdin.flush()
@@ -172,7 +172,7 @@ class Tell:
         self._send, self._mark = send, mmap.mmap(2, _MARK.size)
         os.lseek(2, 0, os.SEEK_END)  # where Windows does not leave it
 
-    def __call__(self, *what: Any) -> None:
+    def __call__(self, *what: object) -> None:
         self._send(SAID, what)
 
     def at(self, first: int, last: int) -> None:
@@ -193,7 +193,7 @@ def serve() -> None:
     asked: SimpleQueue[bytes] = SimpleQueue()
     threading.Thread(target=_take, args=(questions, asked), daemon=True).start()
 
-    def send(kind: str, what: Any) -> None:
+    def send(kind: str, what: object) -> None:
         answers.write(pickle.dumps((kind, what)))
         answers.flush()
 
@@ -209,7 +209,7 @@ def serve() -> None:
         send(ANSWER, called(*first, *question))
 
 
-def _take(questions: Any, asked: "SimpleQueue[bytes]") -> None:
+def _take(questions: BinaryIO, asked: "SimpleQueue[bytes]") -> None:
     """Take questions as they come; that none can come any more is heard also in the midst of work."""
     try:
         while True:

@@ -7,7 +7,9 @@ import types
 from collections.abc import Sequence
 from typing import Any
 
+import numpy as np
 import pytest
+from numpy.typing import ArrayLike
 
 from house.rooms import load, module_names
 from squealbox.units import unit
@@ -66,6 +68,7 @@ FACES = ["squealbox"] + [f"squealbox.{room}" for room in (
 )]  # fmt: skip
 ONE = (float, float | None, tuple[float, float], tuple[float, float] | None)
 NUMBERS = (*ONE, Sequence[float], Sequence[float] | None, float | Sequence[float] | None)
+ARRAYS = (Any, np.ndarray, np.ndarray | None, float | np.ndarray, ArrayLike, ArrayLike | None)
 IN_WORDS = re.compile(r"\bSI\b|\bunits? of\b|\bown unit\b|\bin Hz\b|\bdB\b")
 SHAPE = re.compile(
     r"\bshapes? |\(\.\.\.|\((?:\d+|[a-z_]+),(?: (?:\d+|2 ?n|[a-z_]+),?)*\)|\bscalars?\b|for each\b"
@@ -109,7 +112,9 @@ def owed(thing) -> tuple[bool, list[str]]:
     if inspect.isfunction(thing):
         told, signature = told_of(text), inspect.signature(thing)
         for name, about in signature.parameters.items():
-            array = about.annotation is Any and name not in NO_ARRAYS and re.search(r"\barrays?\b|\bmatri", told[name])
+            array = (
+                about.annotation in ARRAYS and name not in NO_ARRAYS and re.search(r"\barrays?\b|\bmatri", told[name])
+            )
             owes |= about.annotation in NUMBERS or bool(array)
             lacks += [f"{name} has no unit"] * (about.annotation in NUMBERS and not has_unit(told[name]))
             lacks += [f"{name} has no shape"] * (bool(array) and not SHAPE.search(told[name]))

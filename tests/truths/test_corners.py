@@ -1,10 +1,13 @@
 """Branches go on past corners: the end of stick-slip against one exact orbit, the drum against shooting by itself."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from squealbox import Contact, DrumBrake, LinearSlope, Stribeck, System, branch, hopf_point, shooting, simulate
 from squealbox.limit_cycles import stick_slip_limit
+from squealbox.limit_cycles.branches import corners
 from squealbox.limit_cycles.branches.shooting_path import ShootingPath
 
 LAW = Stribeck(0.4, 0.25, 0.3)
@@ -29,6 +32,13 @@ def test_the_corner_is_the_exact_end_of_stick_slip(around):
     np.testing.assert_allclose(around.special_value, CORNER, rtol=0.0, atol=1e-8)
     assert all(point.uncertainty < 1e-7 for point in around.points)
     assert abs(stick_slip_limit(LAW, (0.2, 0.5), 1.0, 0.21) - CORNER) > 1e-3  # another damping would not pass
+
+
+def test_beyond_a_point_without_a_motion_nothing_is_looked_for():
+    """Its events cannot be told from others: the walk ends as it ended."""
+    path = SimpleNamespace(sequence=lambda x, p: None)
+    walk = SimpleNamespace(equation=SimpleNamespace(y=lambda x, p: np.append(x, p)), outcome="as it ended")
+    assert corners.beyond(path, walk, SimpleNamespace(x=np.ones(2), p=0.3)) == "as it ended"
 
 
 def test_both_sides_of_the_corner(around):

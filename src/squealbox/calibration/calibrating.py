@@ -7,16 +7,18 @@ The singular values of J, scaled by the parameters, say which combinations the d
 Source: G. A. F. Seber, C. J. Wild, Nonlinear Regression, 1989, chapters 3 and 5.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.arguments import public
 from squealbox.calibration.measured import Measured
 from squealbox.calibration.search import WORST, linearised, losses, searched
 from squealbox.distributions import TruncatedNormal
+from squealbox.family import DesignOrRecipe
 from squealbox.parameters import ParameterError
 from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.scatter import Scatter
@@ -139,7 +141,7 @@ class Calibration(Result):
 
 @public()
 def calibrate(
-    design: Any,
+    design: DesignOrRecipe,
     parameters: Mapping[str, tuple[float, float]],
     measured: Sequence[Measured | Sequence[Measured]],
     *,
@@ -228,7 +230,7 @@ def calibrate(
     )  # fmt: skip
 
 
-def _flat(measured: Any) -> list[Any]:
+def _flat(measured: Iterable[Any]) -> list[Any]:
     """The measured numbers, those of lists among them each for itself."""
     found: list[Any] = []
     for each in measured:
@@ -239,7 +241,9 @@ def _flat(measured: Any) -> list[Any]:
 class _Problem:
     """Residuals (measured - predicted)/sd at points of the unit box, all in one call."""
 
-    def __init__(self, design: Any, names: Sequence[str], bounds: Sequence[Any], measured: Sequence[Measured]) -> None:
+    def __init__(
+        self, design: DesignOrRecipe, names: Sequence[str], bounds: Sequence[Any], measured: Sequence[Measured]
+    ) -> None:
         if not names:
             raise ParameterError("calibrate", "parameters", {}, "one parameter or more with its bounds")
         if not measured or not all(isinstance(each, Measured) for each in measured):
@@ -255,11 +259,11 @@ class _Problem:
         for ends in (self.low, high):  # a bound outside a parameter's range is told at once
             _made(design, dict(zip(self.names, (float(x) for x in ends), strict=True)))
 
-    def inside(self, values: Any) -> Any:
+    def inside(self, values: ArrayLike) -> Any:
         """Values as a point of the unit box."""
         return np.clip((np.asarray(values) - self.low) / self.width, 0.0, 1.0)
 
-    def __call__(self, u: Any) -> Any:
+    def __call__(self, u: np.ndarray) -> Any:
         values = self.low + np.atleast_2d(u) * self.width
         columns = {name: values[:, i] for i, name in enumerate(self.names)}
         rows: list[Any] = []
@@ -288,7 +292,14 @@ class _Problem:
 
 
 def _profiles(
-    problem: _Problem, u: Any, cost: float, errors: Any, rise: float, robust: bool, low: Any, high: Any
+    problem: _Problem,
+    u: np.ndarray,
+    cost: float,
+    errors: np.ndarray,
+    rise: float,
+    robust: bool,
+    low: np.ndarray,
+    high: np.ndarray,
 ) -> tuple[Any, Any]:
     """Ends of the profile intervals; a bound where chi^2 does not rise so far within it."""
     size = len(u)
@@ -330,7 +341,14 @@ def _profiles(
 
 
 def _words(
-    problem: _Problem, values: Any, errors: Any, singular: Any, rows: Any, unknown: Any, low: Any, high: Any
+    problem: _Problem,
+    values: np.ndarray,
+    errors: np.ndarray,
+    singular: np.ndarray,
+    rows: np.ndarray,
+    unknown: np.ndarray,
+    low: np.ndarray,
+    high: np.ndarray,
 ) -> list[str]:
     """What the data cannot tell apart, a sentence each."""
     told = []

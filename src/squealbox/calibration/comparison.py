@@ -1,7 +1,7 @@
 """Simulated and measured side by side: frequency, growth, level; and mode shapes by the modal assurance criterion."""
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -11,6 +11,9 @@ from squealbox.signals import BELOW, SignalError, SquealEvents, dominant_frequen
 from squealbox.stability import modal_assurance
 from squealbox.system import as_system
 from squealbox.transient import verdict
+
+if TYPE_CHECKING:
+    from squealbox.stability import ComplexModes
 
 FAR = 10.0  # standard deviations: what is farther away is no error of the measurement
 ONSET = 0.1, 0.02  # of the last amplitude: up to the one it grows freely, below the other it must begin
@@ -100,7 +103,7 @@ def compare(simulated: Any, events: Any, *, event: int | None = None, dof: int |
     )  # fmt: skip
 
 
-def _of_table(modes: Any, table: ModeTable) -> Comparison:
+def _of_table(modes: "ComplexModes", table: ModeTable) -> Comparison:
     """Frequency, damping ratio and MAC of each measured mode and the model's that goes with it."""
     from scipy.optimize import linear_sum_assignment
 

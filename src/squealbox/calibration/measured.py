@@ -2,14 +2,19 @@
 
 import dataclasses
 from collections.abc import Callable, Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.parameters import DataSheet, ParameterError, known_names
-from squealbox.signals import LEVEL, SignalError, growth_rate
+from squealbox.signals import LEVEL, Signal, SignalError, growth_rate
 from squealbox.stability import complex_modes, first_crossings
 from squealbox.transient import simulate_ensemble
+
+if TYPE_CHECKING:
+    from squealbox.signals import SquealEvents
+    from squealbox.stability import ComplexModes
 
 QUANTITIES = (
     "growth_rate", "frequency", "damping_ratio", "critical_value", "amplitude", "cycle_frequency", "friction",
@@ -102,7 +107,7 @@ class Measured(DataSheet):
             kept["modes"] = complex_modes(design)
         return self._of_modes(kept["modes"])
 
-    def _of_modes(self, modes: Any) -> Any:
+    def _of_modes(self, modes: "ComplexModes") -> Any:
         growth, frequency = np.asarray(modes.growth_rate), np.asarray(modes.frequency)
         values = np.asarray(getattr(modes, str(self.quantity)))
         moving = frequency > 0.0
@@ -119,7 +124,9 @@ class Measured(DataSheet):
         return np.take_along_axis(values, place[..., None], axis=-1)[..., 0]
 
 
-def from_signal(signal: Any, t: Any = None, *, mode: str | int = "unstable", **cut: Any) -> list[Measured]:
+def from_signal(
+    signal: Signal, t: ArrayLike | None = None, *, mode: str | int = "unstable", **cut: Any
+) -> list[Measured]:
     """Frequency and growth rate of a time signal as two measured numbers with the errors the noise leaves them.
 
     Raises `SignalError` when the signal cannot tell them.
@@ -136,7 +143,9 @@ def from_signal(signal: Any, t: Any = None, *, mode: str | int = "unstable", **c
     ]
 
 
-def from_friction(speeds: Any, values: Any, sd: float, at: Mapping[str, float] | None = None) -> list[Measured]:
+def from_friction(
+    speeds: ArrayLike, values: ArrayLike, sd: float, at: Mapping[str, float] | None = None
+) -> list[Measured]:
     """A measured friction curve, coefficients at sliding speeds [m/s], as measured numbers.
 
     `sd` [-]: standard deviation of a coefficient.
@@ -151,7 +160,7 @@ def from_friction(speeds: Any, values: Any, sd: float, at: Mapping[str, float] |
     ]
 
 
-def from_events(events: Any, index: int = 0, at: Mapping[str, str] | None = None) -> list[Measured]:
+def from_events(events: "SquealEvents", index: int = 0, at: Mapping[str, str] | None = None) -> list[Measured]:
     """Frequency and growth rate of one squeal event, as far as the recording tells them.
 
     Where its growth is told, frequency and rate are those of the onset, of small motion as of modes; the frequency of

@@ -77,7 +77,7 @@ def _table(path: Path) -> tuple[Any, Any, tuple[str, ...], Any]:
     return frequency, damping, places, np.array(shapes, dtype=complex).reshape(len(places), frequency.size)
 
 
-def _numbers(path: Path, name: str, column: Any) -> Any:
+def _numbers(path: Path, name: str, column: np.ndarray) -> Any:
     try:
         return np.array([complex(cell.strip().replace(" ", "").replace("i", "j")) for cell in column])
     except ValueError as error:

@@ -10,6 +10,7 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 Residuals = Callable[[Any], Any]  # (points, p) in [0, 1] -> (points, m)
 STEP = 1e-6
@@ -17,7 +18,9 @@ STEPS = 80
 WORST = 1e6  # residual of a point without an answer
 
 
-def searched(residuals: Residuals, start: Any, free: Any, robust: bool, steps: int = STEPS) -> tuple[Any, Any]:
+def searched(
+    residuals: Residuals, start: ArrayLike, free: np.ndarray, robust: bool, steps: int = STEPS
+) -> tuple[Any, Any]:
     """Where each search ends, shape (b, p), and its sum of squares (b,); `free` (b, p) says what may vary."""
     u = np.clip(np.array(start, dtype=float), 0.0, 1.0)
     count, size = u.shape
@@ -56,12 +59,12 @@ def searched(residuals: Residuals, start: Any, free: Any, robust: bool, steps: i
     return u, cost
 
 
-def losses(r: Any, robust: bool) -> Any:
+def losses(r: np.ndarray, robust: bool) -> Any:
     """Sum of rho(r^2) of each point: r^2, or 2 (sqrt(1 + r^2) - 1)."""
     return np.sum(2.0 * (np.sqrt(1.0 + r**2) - 1.0) if robust else r**2, axis=1)
 
 
-def linearised(residuals: Residuals, u: Any) -> tuple[Any, Any]:
+def linearised(residuals: Residuals, u: np.ndarray) -> tuple[Any, Any]:
     """Residuals (b, m) and their derivatives (b, m, p) by central differences, one-sided at the bounds."""
     count, size = u.shape
     shifts = STEP * np.eye(size)
@@ -73,6 +76,6 @@ def linearised(residuals: Residuals, u: Any) -> tuple[Any, Any]:
     return values[:, 0].copy(), np.swapaxes(slopes, 1, 2).copy()
 
 
-def _pushes(jacobian: Any, r: Any, weight: Any, sign: int) -> Any:
+def _pushes(jacobian: np.ndarray, r: np.ndarray, weight: np.ndarray, sign: int) -> Any:
     """Where descent would leave the box on the side of `sign`."""
     return -sign * np.einsum("bmi,bm->bi", jacobian, r * weight) > 0.0

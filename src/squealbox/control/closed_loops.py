@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.arguments import public
 from squealbox.control import margins, sampled
@@ -12,6 +13,7 @@ from squealbox.control.poles import Late, late_poles
 from squealbox.extras import extra
 from squealbox.parameters import ParameterError, with_cautions
 from squealbox.result import COMPLETED, Array, Outcome, Result, quantity
+from squealbox.system import DesignOrSystem
 from squealbox.words import growing
 
 MOST_HELD = 200.0  # samples in a delay up to which a sampling rate is looked for
@@ -116,7 +118,7 @@ class ClosedLoop(Result):
         step: float = brentq(growth, low, high, xtol=1e-16 * high, rtol=1e-14)
         return 1.0 / step
 
-    def root_locus(self, gains: Any, loop: int | None = None) -> Any:
+    def root_locus(self, gains: ArrayLike, loop: int | None = None) -> Any:
         """Poles (k, ...) with the forces of one loop, or of all, times each of `gains`; delay and sampling left out."""
         found = self.plant
         factor = np.ones((len(np.atleast_1d(gains)), len(found.loops)))
@@ -125,7 +127,7 @@ class ClosedLoop(Result):
         values = np.linalg.eigvals(found.A + (found.B * factor[:, None, :]) @ found.H)
         return np.take_along_axis(values, np.argsort(-values.real, axis=-1), axis=-1)
 
-    def nyquist(self, frequencies: Any, loop: int = 0) -> Any:
+    def nyquist(self, frequencies: ArrayLike, loop: int = 0) -> Any:
         """The open loop -L(i w), sampled -L(exp(i w h)), of one loop, the others closed, at frequencies [Hz].
 
         -1 is the critical point.
@@ -174,7 +176,7 @@ class ClosedLoop(Result):
 
 
 @public()
-def closed_loop(design_or_system: Any, *, line: float | None = None, time: float = 0.0) -> ClosedLoop:
+def closed_loop(design_or_system: DesignOrSystem, *, line: float | None = None, time: float = 0.0) -> ClosedLoop:
     """The poles of a brake with loops about steady sliding.
 
     Parameters

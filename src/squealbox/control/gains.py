@@ -1,7 +1,6 @@
 """Which gains hold a brake: the ranges of a common factor on the forces of loops in which every pole decays."""
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -11,6 +10,7 @@ from squealbox.control.plants import Plant, plant
 from squealbox.control.poles import Late, late_poles
 from squealbox.parameters import ParameterError
 from squealbox.result import Array, Outcome, Result, quantity
+from squealbox.system import DesignOrSystem
 
 LEAST, MOST, POINTS, FEWER = 1e-3, 1e3, 97, 37  # factors looked at, beside 0; fewer where each asks for late poles
 TIGHT = 1e-13  # relative width to which an end of a range is solved for
@@ -49,7 +49,7 @@ class StableGains(Result):
 
 
 @public()
-def stable_gains(design_or_system: Any, loop: int | None = None, *, time: float = 0.0) -> StableGains:
+def stable_gains(design_or_system: DesignOrSystem, loop: int | None = None, *, time: float = 0.0) -> StableGains:
     """The ranges of a factor >= 0 on the forces of the loops in which the brake is stable, delays and sampling kept.
 
     Parameters
@@ -105,7 +105,7 @@ def stable_gains(design_or_system: Any, loop: int | None = None, *, time: float 
     )
 
 
-def _growth(found: Plant, gains: Any) -> float:
+def _growth(found: Plant, gains: np.ndarray) -> float:
     """Largest growth rate [1/s] with the commands times gains (a,)."""
     if np.any(found.sampling > 0.0):
         matrix, step = sampled.held(found, gains=gains)

@@ -14,9 +14,11 @@ whose order is twice the square of that of A. For larger plants the frequencies 
 small H (i w - A)^-1 B has the size 1, looked for on a grid that is dense at every resonance, open and closed.
 """
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.control.plants import Plant
 
@@ -25,7 +27,7 @@ BESIDE = 41  # frequencies looked at beside each resonance
 GRID = 4001  # frequencies looked at for a loop with a delay of its own
 
 
-def unit_gain(A: Any, B: Any, H: Any) -> Any:
+def unit_gain(A: np.ndarray, B: np.ndarray, H: np.ndarray) -> Any:
     """Angular frequencies > 0 at which |H (i w - A)^-1 B| = 1, one input and output."""
     big = np.block([[A, np.outer(B, B)], [-np.outer(H, H), -A.T]])
     values = np.linalg.eigvals(big)
@@ -38,7 +40,7 @@ def unit_gain(A: Any, B: Any, H: Any) -> Any:
     return _sharpened(gain, near)
 
 
-def real_gain(A: Any, B: Any, H: Any) -> Any:
+def real_gain(A: np.ndarray, B: np.ndarray, H: np.ndarray) -> Any:
     """Angular frequencies > 0 at which H (i w - A)^-1 B is real: -A^-1 turns Im L into a pencil in w^2."""
     # Im L = -w H (w^2 + A^2)^-1 B: zeros of the system (-A^2, B, H) in w^2
     d = len(A)
@@ -96,7 +98,7 @@ def delay_margin(plant: Plant) -> float:
     return float(min(later, default=np.inf))
 
 
-def _crossings(A0: Any, A1: Any) -> list[tuple[float, float]]:
+def _crossings(A0: np.ndarray, A1: np.ndarray) -> list[tuple[float, float]]:
     """(w, T) with a pole i w of x' = A0 x + A1 x(t - T), each T the least that is not negative."""
     size = float(np.max(np.abs(np.linalg.eigvals(A0)))) or 1.0
     from scipy.linalg import eig, matrix_balance
@@ -137,7 +139,7 @@ def _crossings_by_grid(plant: Plant) -> list[tuple[float, float]]:
     own, shapes = np.linalg.eig(A)
     out, into = H @ shapes, np.linalg.solve(shapes, B.astype(complex))  # near a double pole a little off: a guess
 
-    def gains(x: Any) -> Any:
+    def gains(x: ArrayLike) -> Any:
         values = np.linalg.eigvals((out / (1j * np.asarray(x)[..., None, None] - own)) @ into)
         return np.take_along_axis(values, np.argsort(np.abs(values), axis=-1), axis=-1)
 
@@ -151,11 +153,11 @@ def _crossings_by_grid(plant: Plant) -> list[tuple[float, float]]:
     return [(x * size, phase / (x * size)) for x, phase in found]
 
 
-def _logarithm(x: float, gains: Any, place: int) -> float:
+def _logarithm(x: float, gains: Callable[[Any], Any], place: int) -> float:
     return float(np.log(abs(gains(x)[place])))
 
 
-def _polished(A0: Any, A1: Any, w: float, phase: float) -> tuple[float, float] | None:
+def _polished(A0: np.ndarray, A1: np.ndarray, w: float, phase: float) -> tuple[float, float] | None:
     """Newton's method on det(i w - A0 - exp(-i phase) A1) = 0 in w and phase, with the vector."""
     d = len(A0)
     matrix = 1j * w * np.eye(d) - A0 - np.exp(-1j * phase) * A1
@@ -214,18 +216,18 @@ def broken(plant: Plant, a: int) -> tuple[Any, Any, Any]:
     return plant.A + plant.B[:, others] @ plant.H[others], plant.B[:, a], plant.H[a]
 
 
-def loop_gain(A: Any, B: Any, H: Any, w: Any, delay: float = 0.0) -> Any:
+def loop_gain(A: np.ndarray, B: np.ndarray, H: np.ndarray, w: ArrayLike, delay: float = 0.0) -> Any:
     """exp(-i w T) H (i w - A)^-1 B at angular frequencies w (...)."""
     w = np.asarray(w, dtype=float)
     state = np.linalg.solve(1j * w[..., None, None] * np.eye(len(A)) - A, B.astype(complex)[:, None])
     return (H @ state)[..., 0] * np.exp(-1j * w * delay)
 
 
-def _loop(A: Any, B: Any, H: Any, w: float, delay: float = 0.0) -> complex:
+def _loop(A: np.ndarray, B: np.ndarray, H: np.ndarray, w: float, delay: float = 0.0) -> complex:
     return complex(loop_gain(A, B, H, w, delay))
 
 
-def _grid_roots(plant: Plant, a: int, A: Any, B: Any, H: Any) -> Any:
+def _grid_roots(plant: Plant, a: int, A: np.ndarray, B: np.ndarray, H: np.ndarray) -> Any:
     delay = float(plant.delay[a])
     own = np.abs(np.linalg.eigvals(A))
     w = np.geomspace(1e-3 * float(np.min(own[own > 0.0], initial=1.0)), 30.0 * float(np.max(own)), GRID)
@@ -237,7 +239,7 @@ def _grid_roots(plant: Plant, a: int, A: Any, B: Any, H: Any) -> Any:
     return np.array([brentq(lambda x: _loop(A, B, H, x, delay).imag, own_w[i], own_w[i + 1]) for i in places])
 
 
-def _sharpened(function: Any, guesses: Any) -> Any:
+def _sharpened(function: Callable[[Any], Any], guesses: np.ndarray) -> Any:
     """The roots near the guesses, by the secant method."""
     from scipy.optimize import newton
 

@@ -8,7 +8,6 @@ A pair serves a mode where its real part is negative, and spills over into every
 """
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -16,7 +15,7 @@ from squealbox.arguments import public
 from squealbox.parameters import ParameterError
 from squealbox.result import Array, Result, quantity
 from squealbox.stability import complex_modes
-from squealbox.system import as_system
+from squealbox.system import DesignOrSystem, as_system
 
 SHOWN = 6
 
@@ -65,7 +64,7 @@ class Placement(Result):
 
 
 @public()
-def placement(design_or_system: Any, time: float = 0.0) -> Placement:
+def placement(design_or_system: DesignOrSystem, time: float = 0.0) -> Placement:
     """Which pair of sensor and actuator damps which mode, from the mode shapes.
 
     Parameters

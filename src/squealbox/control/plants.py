@@ -13,7 +13,7 @@ import numpy as np
 from squealbox.loops import Loop, first_order, folded
 from squealbox.parameters import ParameterError
 from squealbox.result import Outcome
-from squealbox.system import System, linearise
+from squealbox.system import DesignOrSystem, Equilibrium, System, linearise
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,17 +39,17 @@ class Plant:
         """A + B H: every loop closed at once, without its delay and sampling."""
         return self.A + self.B @ self.H
 
-    def replaced(self, delay: Any) -> "Plant":
+    def replaced(self, delay: np.ndarray) -> "Plant":
         """The same with other delays (a,) [s]."""
         return replace(self, delay=delay)
 
 
-def with_loops(design_or_system: Any) -> System:
+def with_loops(design_or_system: DesignOrSystem) -> System:
     """The system with its loops still apart."""
     return design_or_system if isinstance(design_or_system, System) else design_or_system.system()
 
 
-def plant(design_or_system: Any, time: float = 0.0) -> Plant:
+def plant(design_or_system: DesignOrSystem, time: float = 0.0) -> Plant:
     """The linear form of a brake with loops; `ParameterError` without loops or with leading axes.
 
     `time` [s]: instant at which schedules are taken.
@@ -106,7 +106,7 @@ def plant(design_or_system: Any, time: float = 0.0) -> Plant:
     )  # fmt: skip
 
 
-def _about(system: System, steady: Any, time: float) -> Any:
+def _about(system: System, steady: Equilibrium, time: float) -> Any:
     """The brake's own matrices at the steady state of the closed loop, with the loops' static pull on the contacts."""
     shifted = tuple(
         contact.replace(

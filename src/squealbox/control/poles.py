@@ -13,6 +13,7 @@ side on the line is walked; beyond that reach det D = s^d det(I - X/s) with |X/s
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.loops import chebyshev
 
@@ -27,7 +28,7 @@ WELL = 1e6  # condition of the eigenvectors of A up to which its modes tell the 
 class Late:
     """x' = A x + sum_k A_k x(t - T_k) with time scaled, each T_k > 0."""
 
-    def __init__(self, A: Any, parts: list[tuple[float, Any]]) -> None:
+    def __init__(self, A: np.ndarray, parts: list[tuple[float, Any]]) -> None:
         from scipy.linalg import matrix_balance
 
         size = np.abs(A) + sum((np.abs(part) for _, part in parts), np.zeros_like(A))
@@ -44,13 +45,13 @@ class Late:
             out = np.vstack([right for _, _, right in self.split]) @ vectors
             self.way = (out.T[:, :, None] * into[:, None, :]).reshape(len(values), -1)  # V (sI - A)^-1 U by modes of A
 
-    def matrix(self, s: Any) -> Any:
+    def matrix(self, s: ArrayLike) -> Any:
         """D(s) for s (...), shape (..., d, d)."""
         s = np.asarray(s, dtype=complex)[..., None, None]
         late = (part * np.exp(np.minimum(-s.real * delay, 600.0) - 1j * s.imag * delay) for delay, part in self.parts)
         return s * np.eye(len(self.A)) - self.A - sum(late)
 
-    def slope(self, s: Any) -> Any:
+    def slope(self, s: ArrayLike) -> Any:
         """dD/ds."""
         s = np.asarray(s, dtype=complex)[..., None, None]
         late = (
@@ -59,7 +60,7 @@ class Late:
         )
         return np.eye(len(self.A)) + sum(late)
 
-    def phase(self, s: Any) -> Any:
+    def phase(self, s: np.ndarray) -> Any:
         """det D/|det D| for s (k,), by det D = det(sI - A) det(I - V (sI - A)^-1 U e(s)) with what is late as U e V."""
         if not self.known:
             return np.linalg.slogdet(self.matrix(s))[0]
@@ -74,7 +75,7 @@ class Late:
         found[lost] = np.linalg.slogdet(self.matrix(s[lost]))[0]
         return found
 
-    def reach(self, line: Any) -> Any:
+    def reach(self, line: float | np.ndarray) -> Any:
         """No pole with Re s >= line is farther from 0 than this."""
         late = (size * np.exp(-line * delay) for size, (delay, _) in zip(self.sizes, self.parts, strict=True))
         return self.own + sum(late)
@@ -133,7 +134,7 @@ def discretised(late: Late, reach: float) -> Any:
     return values
 
 
-def refined(late: Late, guesses: Any, line: float) -> Any:
+def refined(late: Late, guesses: np.ndarray, line: float) -> Any:
     """The poles behind the guesses with Re s > line, by Newton's method on s and its vector, each once."""
     scale = late.reach(line)
     near = guesses[(guesses.real > line - 0.1 * abs(line) - 0.02 * scale) & (np.abs(guesses) < 1.2 * scale)]
@@ -149,7 +150,7 @@ def refined(late: Late, guesses: Any, line: float) -> Any:
     return both[np.lexsort((-both.imag, -both.real))]
 
 
-def newton(late: Late, guesses: Any, most: int = 16) -> Any:
+def newton(late: Late, guesses: ArrayLike, most: int = 16) -> Any:
     """The poles near the guesses (k,): Newton's method on D(s) v = 0, c.v = 1; without those that do not converge."""
     s = np.array(guesses, dtype=complex)
     d, scale = len(late.A), late.reach(0.0)
@@ -198,17 +199,17 @@ def count(late: Late, line: float, reach: float) -> int:
     return int(np.rint((around + np.sum(np.angle(phase[1:] / phase[:-1]))) / np.pi))
 
 
-def _halves(part: Any) -> tuple[Any, Any]:
+def _halves(part: np.ndarray) -> tuple[Any, Any]:
     """U and V of part = U V, of as few columns as it needs."""
     left, sizes, right = np.linalg.svd(part)
     kept = sizes > 1e-14 * sizes[0]
     return left[:, kept] * sizes[kept], right[kept]
 
 
-def _beside(line: float, poles: Any, reach: float) -> float:
+def _beside(line: float, poles: np.ndarray, reach: float) -> float:
     """A line a little to the left of `line` when a pole lies on it, else the line."""
     return line if not len(poles) or np.min(np.abs(poles.real - line)) > 1e-6 * reach else line - 2e-6 * reach
 
 
-def _norm(matrix: Any) -> float:
+def _norm(matrix: np.ndarray) -> float:
     return float(np.linalg.norm(matrix, 2))

@@ -8,14 +8,16 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.arguments import public
 from squealbox.control.closed_loops import closed_loop
 from squealbox.control.plants import with_loops
+from squealbox.loops import Loop
 from squealbox.parameters import ParameterError
 from squealbox.result import COMPLETED, Array, Outcome, Result, quantity
 from squealbox.stability import complex_modes
-from squealbox.system import equilibrium
+from squealbox.system import DesignOrSystem, equilibrium
 from squealbox.transient import simulate
 
 PERIODS, LONGEST = 40, 16  # of the pushed mode in one run, and longer ones before it counts as not dying down
@@ -54,7 +56,7 @@ class DefeatingPush(Result):
 
 @public()
 def defeating_push(
-    design_or_system: Any, direction: Any = None, *, precision: float = 1e-3, rtol: float = 1e-9
+    design_or_system: DesignOrSystem, direction: ArrayLike | None = None, *, precision: float = 1e-3, rtol: float = 1e-9
 ) -> DefeatingPush:
     """The smallest push that defeats the limited loops of a brake that is stable with them near steady sliding.
 
@@ -114,7 +116,7 @@ def defeating_push(
     )  # fmt: skip
 
 
-def _gain(loop: Any, names: tuple[str, ...], shape: Any, period: float) -> float:
+def _gain(loop: Loop, names: tuple[str, ...], shape: np.ndarray, period: float) -> float:
     """Force per m/s of a vibration along the shape, near enough to begin with."""
     row = loop.controller(names)
     return float(np.abs(row.R @ shape) + np.abs(row.P @ shape) * period / (2.0 * np.pi)) or 1.0
@@ -123,7 +125,7 @@ def _gain(loop: Any, names: tuple[str, ...], shape: Any, period: float) -> float
 class _Pushed:
     """Runs after pushes of one direction."""
 
-    def __init__(self, brake: Any, rest: Any, shape: Any, period: float, rtol: float) -> None:
+    def __init__(self, brake: DesignOrSystem, rest: np.ndarray, shape: np.ndarray, period: float, rtol: float) -> None:
         self.brake, self.rest, self.shape, self.period, self.rtol = brake, rest, shape, period, rtol
         self.runs, self.amplitude, self.failed = 0, np.zeros(len(rest)), Outcome(COMPLETED)
 

@@ -12,7 +12,7 @@ from squealbox.control.plants import with_loops
 from squealbox.loops import Driven, driven_brake
 from squealbox.parameters import ParameterError
 from squealbox.result import Array, Outcome, Result, quantity
-from squealbox.system import System, equilibrium
+from squealbox.system import DesignOrSystem, System, equilibrium
 from squealbox.transient import in_pieces, start_of_driven
 
 LAST, MOSTLY = 0.25, 0.5  # share of a run, and share of that at a limit beyond which a loop is saturated
@@ -41,7 +41,7 @@ class LoopRun(Result):
         )
 
 
-def run_loops(design_or_system: Any, duration: float, start: Any = None, *, rtol: float = 1e-10) -> LoopRun:
+def run_loops(design_or_system: DesignOrSystem, duration: float, start: Any = None, *, rtol: float = 1e-10) -> LoopRun:
     """The motion over `duration` [s] of a brake whose loops are sampled, or late, or both; limits are kept.
 
     Parameters
@@ -83,7 +83,7 @@ def run_loops(design_or_system: Any, duration: float, start: Any = None, *, rtol
     )  # fmt: skip
 
 
-def _outcome(driven: Driven, outcome: Outcome, cuts: Any, at_limit: Any) -> Outcome:
+def _outcome(driven: Driven, outcome: Outcome, cuts: np.ndarray, at_limit: np.ndarray) -> Outcome:
     """That of the motion; "saturated" where it completed with a force that is at its limit most of its last part."""
     last = np.clip(cuts[1:] - np.maximum(cuts[:-1], cuts[-1] - LAST * (cuts[-1] - cuts[0])), 0.0, None)
     shares = last @ at_limit / max(float(np.sum(last)), 1e-300)

@@ -5,9 +5,11 @@ broken, L(z) = h (z I - Phi)^-1 b on the unit circle says its margins of gain an
 one.
 """
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.control.plants import Plant
 from squealbox.loops import step_matrix
@@ -18,7 +20,9 @@ MOST_STATES = 300  # forces under way up to which further delays of several loop
 FEW = 40  # samples of further delay up to which those of one loop are
 
 
-def held(plant: Plant, rate: float | None = None, delay: Any = None, gains: Any = None) -> Any:
+def held(
+    plant: Plant, rate: float | None = None, delay: np.ndarray | None = None, gains: np.ndarray | None = None
+) -> Any:
     """The matrix of one step of x and the forces still under way; loops without sampling are closed continuously.
 
     rate [Hz], delay (a,) [s] replace those of the loops, gains (a,) [-] multiply their commands. `ParameterError` for
@@ -42,7 +46,7 @@ def held(plant: Plant, rate: float | None = None, delay: Any = None, gains: Any 
     return step_matrix(A, plant.B[:, chosen], H[chosen], delays[chosen], step), step
 
 
-def multipliers(plant: Plant, rate: float | None = None, delay: Any = None) -> tuple[Any, float]:
+def multipliers(plant: Plant, rate: float | None = None, delay: np.ndarray | None = None) -> tuple[Any, float]:
     """The multipliers of one sample, largest first, and its length [s]."""
     matrix, step = held(plant, rate, delay)
     values = np.linalg.eigvals(matrix).astype(complex)
@@ -125,7 +129,7 @@ def _one_delay_margin(plant: Plant, a: int, known: float) -> float:
     return best
 
 
-def loop_gain(plant: Plant, a: int, frequencies: Any) -> Any:
+def loop_gain(plant: Plant, a: int, frequencies: ArrayLike) -> Any:
     """L(exp(i w h)) of sampled loop a, the others closed, at frequencies [Hz]."""
     return _opened(plant, a)(2.0 * np.pi * np.asarray(frequencies, dtype=float) / np.max(plant.sampling))
 
@@ -140,7 +144,7 @@ def _opened(plant: Plant, a: int) -> Any:
     left, sizes, right = np.linalg.svd(added)
     b, h = left[:, 0] * sizes[0], right[0]
 
-    def gain(angle: Any) -> Any:
+    def gain(angle: ArrayLike) -> Any:
         z = np.exp(1j * np.asarray(angle, dtype=float))[..., None, None]
         with np.errstate(all="ignore"):
             return (h @ np.linalg.solve(z * np.eye(len(open_)) - open_, b.astype(complex)[:, None]))[..., 0]
@@ -148,7 +152,7 @@ def _opened(plant: Plant, a: int) -> Any:
     return gain
 
 
-def _roots(function: Any) -> Any:
+def _roots(function: Callable[[Any], Any]) -> Any:
     """Angles in (0, pi) at which a function of the angle changes its sign."""
     from scipy.optimize import brentq
 

@@ -9,6 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, Self
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.design import Design
 from squealbox.loops import padded_load
@@ -22,7 +23,7 @@ class Titled:
     def __init__(self, words: str) -> None:
         self.words = words
 
-    def __get__(self, made: Any, kind: Any = None) -> str:
+    def __get__(self, made: Any, kind: object = None) -> str:
         return self.words if made is None else f"{made.brake.title}, {self.words[:1].lower()}{self.words[1:]}"
 
 
@@ -129,7 +130,13 @@ def contact_index(owner: str, field: str, system: System, at: str) -> int:
     return names.index(at)
 
 
-def added(system: System, *, mass: Any = None, damping: Any = None, stiffness: Any = None) -> System:
+def added(
+    system: System,
+    *,
+    mass: np.ndarray | None = None,
+    damping: np.ndarray | None = None,
+    stiffness: np.ndarray | None = None,
+) -> System:
     """The system with matrices (..., n, n) added to its own."""
     changes = {"M": mass, "C": damping, "K": stiffness}
     return system.replace({name: getattr(system, name) + more for name, more in changes.items() if more is not None})
@@ -155,14 +162,14 @@ def extended(system: System, *names: str) -> System:
     )
 
 
-def outer(scale: Any, left: Any, right: Any) -> Any:
+def outer(scale: ArrayLike, left: ArrayLike, right: ArrayLike) -> Any:
     """scale left right', shape (..., n, n)."""
     return np.asarray(scale, dtype=float)[..., None, None] * (
         np.asarray(left)[..., :, None] * np.asarray(right)[..., None, :]
     )
 
 
-def _padded(array: Any, more: int, axes: int) -> Any:
+def _padded(array: np.ndarray, more: int, axes: int) -> Any:
     return np.pad(array, [(0, 0)] * (np.ndim(array) - axes) + [(0, more)] * axes)
 
 

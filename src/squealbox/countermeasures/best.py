@@ -8,9 +8,10 @@ two pairs meet, (s^2 + a s + g)^2: eigenvalues move there as the root of a detun
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.arguments import public, with_parameters
 from squealbox.countermeasures.base import outer
@@ -22,6 +23,9 @@ from squealbox.result import Array, Result, quantity
 from squealbox.scatter import Scatter, Scattered, as_scatter
 from squealbox.stability import complex_modes, growth_about, growth_of, spectrum, steady_sliding
 from squealbox.system import Equilibrium, Linearised, as_system
+
+if TYPE_CHECKING:
+    from squealbox.stability import ComplexModes
 
 AIMS = ("decay", "margin", "probability")
 FREQUENCIES, DAMPINGS = 21, 14  # of the detuning map
@@ -167,7 +171,7 @@ def _tuned(start: TunedMass) -> Callable[[Any, Any], Linearised]:
     row[: base.size + 1] = start.stretch(base)
     before = start.spring_and_damper
 
-    def tuned(frequency: Any, damping: Any) -> Linearised:
+    def tuned(frequency: float | np.ndarray, damping: float | np.ndarray) -> Linearised:
         spring, damper = start.tuned_to(frequency, damping)
         stiffness = about.K + outer(spring - before[0], row, row)
         losses = about.C + outer(damper - before[1], row, row)
@@ -183,7 +187,13 @@ def _tuned(start: TunedMass) -> Callable[[Any, Any], Linearised]:
 
 
 def _judge(
-    start: Any, aim: str, scatter: Scatter | None, parameter: str, bounds: Any, samples: int, seed: int
+    start: TunedMass,
+    aim: str,
+    scatter: Any,
+    parameter: str,
+    bounds: tuple[float, float] | None,
+    samples: int,
+    seed: int,
 ) -> Judge:
     """The number to be made small, of frequencies and damping ratios (k,)."""
     if aim == "decay":
@@ -192,14 +202,14 @@ def _judge(
     if aim == "margin":
         limits = _limits(start, parameter, bounds)
 
-        def margin(f: Any, z: Any) -> Any:
+        def margin(f: ArrayLike, z: ArrayLike) -> Any:
             pairs = zip(np.atleast_1d(f), np.atleast_1d(z), strict=True)
             return np.array([-first_loss(start.replace(frequency=a, damping=b), parameter, limits) for a, b in pairs])
 
         return margin
     lot = (scatter or Scatter({})).sample(samples, seed=seed)
 
-    def share(f: Any, z: Any) -> Any:
+    def share(f: ArrayLike, z: ArrayLike) -> Any:
         found = []
         for one, two in zip(np.atleast_1d(f), np.atleast_1d(z), strict=True):
             growth = growth_of(start.replace({**lot, "frequency": one, "damping": two}))
@@ -211,18 +221,20 @@ def _judge(
     return share
 
 
-def _limits(start: Any, parameter: str, bounds: Any) -> tuple[float, float]:
+def _limits(start: Design, parameter: str, bounds: tuple[float, float] | None) -> tuple[float, float]:
     if bounds is not None:
         return float(bounds[0]), float(bounds[1])
     value = float(start.value_of(parameter))
     return 0.0, 2.0 * value if value > 0.0 else 1.0
 
 
-def _searched(judge: Judge, frequencies: Any, dampings: Any, grid: Any, most: int) -> tuple[float, float, float]:
+def _searched(
+    judge: Judge, frequencies: np.ndarray, dampings: np.ndarray, grid: np.ndarray, most: int
+) -> tuple[float, float, float]:
     """The best (value, frequency, damping), by Nelder and Mead in logarithms from the best points of the map."""
     from scipy.optimize import minimize
 
-    def judged(x: Any) -> float:
+    def judged(x: np.ndarray) -> float:
         frequency, damping = np.exp(x)
         if not (frequencies[0] / BEYOND < frequency < BEYOND * frequencies[-1] and LIGHTEST < damping < HEAVIEST):
             return float("inf")
@@ -247,13 +259,13 @@ def _searched(judge: Judge, frequencies: Any, dampings: Any, grid: Any, most: in
     return best
 
 
-def _meetings(start: Any, near: tuple[float, float]) -> list[tuple[float, float, float]]:
+def _meetings(start: TunedMass, near: tuple[float, float]) -> list[tuple[float, float, float]]:
     """Tunings near by at which two of the slowest modes meet: (lambda_i - lambda_j)^2 = 0, two real equations."""
     from scipy.optimize import root
 
     tuned = _tuned(start)
 
-    def apart(x: Any) -> Any:
+    def apart(x: np.ndarray) -> Any:
         frequency, damping = np.exp(np.clip(x, np.log(near) - FAR, np.log(near) + FAR))  # a step may go anywhere
         values = spectrum(tuned(frequency, damping))
         upper = np.sort_complex(-values[: len(values) // 2])[: max(len(values) // 2, 2)]
@@ -273,7 +285,7 @@ def _meetings(start: Any, near: tuple[float, float]) -> list[tuple[float, float,
     return [(float(met), frequency, damping)]
 
 
-def _band(design: Any) -> tuple[float, float]:
+def _band(design: TunedMass) -> tuple[float, float]:
     """The frequencies around the tuning between which the brake is stable; NaN where it is not."""
     from scipy.optimize import brentq
 
@@ -299,7 +311,15 @@ def _band(design: Any) -> tuple[float, float]:
     return ends[0], ends[1]
 
 
-def _without(brake: Any, aim: str, scatter: Any, parameter: str, bounds: Any, samples: int, seed: int) -> float:
+def _without(
+    brake: Design,
+    aim: str,
+    scatter: Any,
+    parameter: str,
+    bounds: tuple[float, float] | None,
+    samples: int,
+    seed: int,
+) -> float:
     if aim == "decay":
         return float(growth_of(brake))
     if aim == "margin":
@@ -307,12 +327,12 @@ def _without(brake: Any, aim: str, scatter: Any, parameter: str, bounds: Any, sa
     return float(np.mean(growth_of(brake.replace(scatter.sample(samples, seed=seed))) > 0.0))
 
 
-def _place(start: Any, on: Any) -> Any:
+def _place(start: TunedMass, on: str) -> Any:
     names = start.brake.system().names
     return [names.index(on)] if isinstance(on, str) else [i for i, x in enumerate(on) if x]
 
 
-def _modal_mass(brake: Any, modes: Any) -> float:
+def _modal_mass(brake: Design, modes: "ComplexModes") -> float:
     shape = modes.most_unstable.shape
     mass = brake.system().M
     size = float(np.real(np.conj(shape) @ (mass[: len(shape), : len(shape)] @ shape[: len(mass)])))

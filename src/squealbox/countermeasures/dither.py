@@ -12,6 +12,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from squealbox.countermeasures.base import Countermeasure
+from squealbox.design import Design
 from squealbox.friction import averaged
 from squealbox.parameters import ParameterError, known_names, parameter
 from squealbox.schedules import Schedule, Sinusoid, Sum, as_schedule
@@ -138,7 +139,7 @@ class NormalDither(Countermeasure):
         return (*said, *resonances(self.brake, self.frequency), *super().cautions())
 
 
-def resonances(brake: Any, frequency: Any) -> list[str]:
+def resonances(brake: Design, frequency: float | np.ndarray) -> list[str]:
     """A sentence for each eigenfrequency of the brake within 20 % of the dither, or at half of it (parametric)."""
     from squealbox.stability import complex_modes
 

@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.design import Design
 from squealbox.stability import growth_of, steady_sliding
 
 MOST_ROWS = 12  # of a state matrix, whose products are 66 then
@@ -21,7 +22,7 @@ NEAR = 2e-3  # share of a margin by which the window below it may lie above the 
 REAL = 1e-6  # imaginary part below which a place is one; beside a window that closes it is the root of round-off
 
 
-def first_loss(design: Any, parameter: str, bounds: tuple[float, float]) -> float:
+def first_loss(design: Design, parameter: str, bounds: tuple[float, float]) -> float:
     """The lowest value of the parameter at which one brake loses its stability, narrow windows included; or the end.
 
     Where the growth rate comes near zero and turns back it is looked at more closely, ever again.
@@ -57,7 +58,7 @@ def first_loss(design: Any, parameter: str, bounds: tuple[float, float]) -> floa
     return found
 
 
-def changes(design: Any, parameter: str, bounds: tuple[float, float]) -> Any:
+def changes(design: Design, parameter: str, bounds: tuple[float, float]) -> Any:
     """Complex x (k,), of low + x (high - low), at which stability may change; None where A is not linear in it."""
     from scipy.linalg import LinAlgError, eigvals
 
@@ -91,7 +92,7 @@ def _products(size: int) -> Any:
     return P
 
 
-def _with(design: Any, parameter: str, values: Any, growth: Any, more: Any) -> tuple[Any, Any]:
+def _with(design: Design, parameter: str, values: np.ndarray, growth: np.ndarray, more: Any) -> tuple[Any, Any]:
     every = np.append(values, more)
     rates = np.append(growth, growth_of(design.replace({parameter: more})))
     every, places = np.unique(every, return_index=True)
@@ -99,7 +100,7 @@ def _with(design: Any, parameter: str, values: Any, growth: Any, more: Any) -> t
 
 
 def at_the_window(
-    start: Any, near: tuple[float, float, float], parameter: str, bounds: tuple[float, float]
+    start: Design, near: tuple[float, float, float], parameter: str, bounds: tuple[float, float]
 ) -> list[tuple[float, float, float]]:
     """The best of the tunings at which the window of instability below the margin just closes.
 

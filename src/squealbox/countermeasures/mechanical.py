@@ -11,6 +11,7 @@ vibration Habib and Kerschen 2015, Proc. R. Soc. A 471, 20140976.
 from typing import Any, ClassVar
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.countermeasures.base import Countermeasure, added, direction, extended, outer
 from squealbox.parameters import parameter
@@ -59,7 +60,7 @@ class TunedMass(Countermeasure):
         """Stiffness [N/m] and damping [N s/m] between the absorber and the brake."""
         return self.tuned_to(self.frequency, self.damping)
 
-    def tuned_to(self, frequency: Any, damping: Any) -> tuple[Any, Any]:
+    def tuned_to(self, frequency: ArrayLike, damping: float | np.ndarray) -> tuple[Any, Any]:
         """Those of a frequency [Hz] and a damping ratio (...) of the same mass, unchecked."""
         mass, rate = np.asarray(self.mass), 2.0 * np.pi * np.asarray(frequency)
         return mass * rate**2, 2.0 * damping * mass * rate

@@ -15,10 +15,11 @@ its stiffness is k0 2 (1 + a)/(2 + a), which is made the shim's `stiffness`. Wha
 from typing import Any, ClassVar
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.countermeasures.base import Countermeasure, added, contact_index, direction, extended, outer
 from squealbox.parameters import ParameterError, above_zero, choice, parameter
-from squealbox.system import System
+from squealbox.system import Contact, System
 
 OWN = "chosen by the user"
 
@@ -70,12 +71,12 @@ class Shim(Countermeasure):
                 "Shim", "at", self.at, "a contact with a stiffness, n not 0: a shim acts on its spring"
             )
         unit = contact.n / size[..., None] if contact.normal is None else np.asarray(contact.normal)
-        spring = np.sum(contact.n * unit, axis=-1) / np.sum(unit * unit, axis=-1)
+        spring = np.asarray(np.sum(contact.n * unit, axis=-1) / np.sum(unit * unit, axis=-1))
         if np.any(np.abs(contact.n - spring[..., None] * unit) > 1e-9 * size[..., None]):
             raise ParameterError("Shim", "at", self.at, "a contact whose n lies along its normal")
         return place, unit, spring
 
-    def _zener(self, base: System, place: int, unit: Any, spring: Any) -> System:
+    def _zener(self, base: System, place: int, unit: np.ndarray, spring: np.ndarray) -> System:
         k0, k1, c1 = standard_solid(self.stiffness, self.loss_factor, self.frequency)
         whole = extended(base, "shim")
         wide, z = np.append(unit, np.zeros((*unit.shape[:-1], 1)), axis=-1), np.eye(whole.size)[-1]
@@ -87,7 +88,7 @@ class Shim(Countermeasure):
         contact = contact.replace(n=row, normal=_reaction(contact, k1 / (k0 + k1), z))
         return _with(added(whole, stiffness=stiffness, damping=outer(c1, z, z)), place, contact)
 
-    def _voigt(self, base: System, place: int, unit: Any, spring: Any) -> System:
+    def _voigt(self, base: System, place: int, unit: np.ndarray, spring: np.ndarray) -> System:
         damper = self.loss_factor * np.asarray(self.stiffness) / (2.0 * np.pi * np.asarray(self.frequency))
         whole = extended(base, "shim")
         wide, s = np.append(unit, np.zeros((*unit.shape[:-1], 1)), axis=-1), np.eye(whole.size)[-1]
@@ -111,7 +112,7 @@ class Shim(Countermeasure):
         return _with(added(base, stiffness=outer(spring, normal, normal) - outer(spring, unit, unit)), place, turned)
 
 
-def standard_solid(stiffness: Any, loss_factor: Any, frequency: Any) -> tuple[Any, Any, Any]:
+def standard_solid(stiffness: float | np.ndarray, loss_factor: ArrayLike, frequency: ArrayLike) -> tuple[Any, Any, Any]:
     """k0, k1 [N/m] and c1 [N s/m] of a Zener solid that has this stiffness and its largest loss at `frequency` [Hz]."""
     eta = np.asarray(loss_factor, dtype=float)
     share = 2.0 * eta**2 + 2.0 * eta * np.sqrt(eta**2 + 1.0)
@@ -120,17 +121,19 @@ def standard_solid(stiffness: Any, loss_factor: Any, frequency: Any) -> tuple[An
     return k0, k1, k1 / np.sqrt(1.0 + share) / (2.0 * np.pi * np.asarray(frequency))
 
 
-def _reaction(contact: Any, share: Any, state: Any) -> Any:
+def _reaction(contact: Contact, share: ArrayLike, state: np.ndarray) -> Any:
     """The direction -normal N acts in, with what the normal force does to the shim's own state."""
     return None if contact.normal is None else contact.normal - np.asarray(share)[..., None] * state
 
 
-def _with(system: System, place: int, contact: Any) -> System:
+def _with(system: System, place: int, contact: Contact) -> System:
     contacts = (*system.contacts[:place], contact, *system.contacts[place + 1 :])
     return system.replace(contacts=contacts)
 
 
-def ross_kerwin_ungar(loss_factor: Any, stiffness_parameter: Any, shear_parameter: Any = None) -> Any:
+def ross_kerwin_ungar(
+    loss_factor: ArrayLike, stiffness_parameter: ArrayLike, shear_parameter: float | np.ndarray | None = None
+) -> Any:
     """Loss factor [-] of a plate with a constrained viscoelastic layer, array in, array out, after Ross, Kerwin and
     Ungar.
 

@@ -78,7 +78,9 @@ def _eq1_printed(brake: "DrumBrake") -> tuple[Contact, ...]:
     ])  # fmt: skip
 
 
-def _eq3_rows(brake: "DrumBrake", speed1: Any, speed2: Any, along_y: float = -1.0) -> list[Row]:
+def _eq3_rows(
+    brake: "DrumBrake", speed1: float | np.ndarray, speed2: float | np.ndarray, along_y: float = -1.0
+) -> list[Row]:
     """The rows of Eq. (3): +, - along x; `along_y` -1 for the printed -, + along y, +1 for +, -."""
     s1, c1, s2, c2 = brake.directions
     k3, k4, speed = brake.k3, brake.k4, brake.sliding_speed

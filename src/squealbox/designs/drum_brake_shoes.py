@@ -158,7 +158,7 @@ class DrumBrakeShoes(Design):
         row[..., 4 + 3 * shoe] = -side * np.asarray(self.arm)  # moment x Fy - y Fx about the centre, at y = arm
         return row
 
-    def point_rows(self, point: Any, place: slice) -> tuple[Any, Any]:
+    def point_rows(self, point: np.ndarray, place: slice) -> tuple[Any, Any]:
         """Rows r with r.q the displacement along x and y of a point of the shoe at `place`."""
         rows = []
         for axis in (0, 1):

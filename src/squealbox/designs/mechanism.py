@@ -18,6 +18,7 @@ import re
 from typing import Any, ClassVar
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.design import Design
 from squealbox.friction import Coulomb
@@ -169,6 +170,6 @@ class OwnMechanism(Design):
         return np.stack(np.broadcast_arrays(*masses), axis=-1)[..., None] * np.eye(len(masses))
 
 
-def _times(factor: Any, left: Any, right: Any) -> Any:
+def _times(factor: ArrayLike, left: np.ndarray, right: np.ndarray) -> Any:
     """factor left right', (..., n, n)."""
     return np.asarray(factor)[..., None, None] * left[..., :, None] * right[..., None, :]

@@ -112,7 +112,7 @@ class InclinedSprings(Design):
         _draw_on_belt(shapes, (-self.angle1, "$k_1$", "k1"), (-self.angle2, "$k_2$", "k2"))
 
 
-def _on_belt(brake: Any, stiffness: Any, damping: Any) -> System:
+def _on_belt(brake: "ModeCoupling | InclinedSprings", stiffness: np.ndarray, damping: np.ndarray) -> System:
     contact = Contact(column(brake.k3) * Y, X, X, brake.load, brake.sliding_speed, brake.friction, "belt", False, Y)
     return System(block(brake.m) * np.eye(2), damping, stiffness, np.zeros(2), (contact,), names=("x", "y"))
 

@@ -155,7 +155,7 @@ class OwnBrake(Design):
             unit = part.unit_for({name: getattr(part, name) for name in UNITS})
             yield prefix + part.name, Parameter(unit, meaning="a part of the matrices"), part.value
 
-    def _with_parts(self, name: str, base: Any) -> Any:
+    def _with_parts(self, name: str, base: np.ndarray) -> Any:
         """An array with what the parts add to it; leading axes of their values are kept."""
         given = [part for part in self.parts if getattr(part, name) is not None]
         added = [np.multiply.outer(part.value, getattr(part, name)) for part in given]
@@ -171,7 +171,7 @@ class OwnBrake(Design):
         load = self._with_parts("load", np.zeros(len(self.M)) if self.load is None else self.load)
         return System(mass, damping, stiffness, load, contacts, self.names, angles=self.angles)
 
-    def _contact(self, contact: OwnContact, n: Any, index: int) -> Contact:
+    def _contact(self, contact: OwnContact, n: np.ndarray, index: int) -> Contact:
         return Contact(
             n=n,
             d=contact.d,

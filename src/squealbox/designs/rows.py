@@ -3,6 +3,7 @@
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.schedules import Schedule, as_schedule
 
@@ -26,21 +27,21 @@ def diagonal(*entries: Any) -> Any:
     return vector(*entries)[..., None] * np.eye(len(entries))
 
 
-def outer(a: Any, b: Any) -> Any:
+def outer(a: np.ndarray, b: np.ndarray) -> Any:
     """``a b'`` of arrays (..., n)."""
     return a[..., :, None] * b[..., None, :]
 
 
-def column(value: Any) -> Any:
+def column(value: ArrayLike) -> Any:
     """`value` with an axis behind its own, to multiply a vector."""
     return np.asarray(value, dtype=float)[..., None]
 
 
-def block(value: Any) -> Any:
+def block(value: ArrayLike) -> Any:
     """`value` with two axes behind its own, to multiply a matrix."""
     return np.asarray(value, dtype=float)[..., None, None]
 
 
-def times(load: Any, direction: Any) -> Any:
+def times(load: float | np.ndarray | Schedule, direction: np.ndarray) -> Any:
     """A load, number or schedule, along a direction (..., n)."""
     return as_schedule(load) * direction if isinstance(load, Schedule) else column(load) * direction

@@ -127,18 +127,18 @@ def band_pairs(small: Small, band: tuple[float, float], *, rough: bool = False) 
     return Pairs(values, x, y, length * dual)
 
 
-def _applied(both: Any, mass: Any, values: Any, x: Any) -> tuple[Any, Any, Any]:
+def _applied(both: np.ndarray, mass: np.ndarray | None, values: np.ndarray, x: np.ndarray) -> tuple[Any, Any, Any]:
     """Q(lambda) x, K x and Q'(lambda) x from K and C stacked and M, None for the unit matrix."""
     product = _times(both, x)
     pulled, damped, heavy = product[: len(x)], product[len(x) :], (x if mass is None else _times(mass, x)) * values
     return pulled + (damped + heavy) * values, pulled, damped + 2.0 * heavy
 
 
-def _single(x: Any) -> Any:
+def _single(x: np.ndarray) -> Any:
     return x.astype(np.complex64)
 
 
-def _holds(small: Small, fast: Any, values: Any) -> list[tuple[Any, Any]]:
+def _holds(small: Small, fast: np.ndarray, values: np.ndarray) -> list[tuple[Any, Any]]:
     """Columns of `values` that lie near each other, and the factor of Q of the fast coordinates in their middle."""
     inside = np.ix_(fast, fast)
     mass, damping, stiffness = (matrix[inside] for matrix in (small.M, small.C, small.K))
@@ -149,7 +149,7 @@ def _holds(small: Small, fast: Any, values: Any) -> list[tuple[Any, Any]]:
     return found
 
 
-def _times(matrix: Any, x: Any) -> Any:
+def _times(matrix: np.ndarray, x: np.ndarray) -> Any:
     """A x for a real A and a complex x (m, k), as one real product."""
     count = x.shape[1]
     both = matrix @ np.concatenate([x.real, x.imag], axis=1)

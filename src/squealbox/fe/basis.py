@@ -6,12 +6,15 @@ what right and left shapes miss, so all three are added; of their span the direc
 """
 
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from squealbox.fe.pencil import Pencil
 from squealbox.fe.undamped_modes import RealModes
+
+if TYPE_CHECKING:
+    from scipy.sparse import sparray
 
 NEGLIGIBLE = 1e-13  # share of the largest length below which a direction is round-off
 
@@ -32,7 +35,7 @@ def enriched_basis(pencil: Pencil, modes: RealModes, top: float, allowed: float 
     return joined(pencil, shapes, strongest(pencil, modes, modes.base.solve_many(right), allowed))
 
 
-def strongest(pencil: Pencil, modes: RealModes, vectors: Any, allowed: float) -> Any:
+def strongest(pencil: Pencil, modes: RealModes, vectors: np.ndarray, allowed: float) -> Any:
     """The directions of most strain energy in `vectors` less their part in the real modes, but for `allowed` of it."""
     shapes = modes.shapes
     vectors = vectors - shapes @ (shapes.T @ (pencil.M @ vectors))
@@ -43,13 +46,13 @@ def strongest(pencil: Pencil, modes: RealModes, vectors: Any, allowed: float) ->
     return vectors @ (turns[:, keep] / np.sqrt(values[keep]))
 
 
-def joined(pencil: Pencil, basis: Any, vectors: Any) -> Any:
+def joined(pencil: Pencil, basis: np.ndarray, vectors: np.ndarray) -> Any:
     """`basis` with the part of `vectors` that is new, V' M V = I; what is not new to round-off is left out."""
     fresh = fresh_directions(pencil.M, [basis], [pencil.M @ basis], vectors)
     return np.concatenate([basis, fresh], axis=1)
 
 
-def fresh_directions(mass: Any, basis: Sequence[Any], weighted: Sequence[Any], vectors: Any) -> Any:
+def fresh_directions(mass: "sparray", basis: Sequence[Any], weighted: Sequence[Any], vectors: np.ndarray) -> Any:
     """What of `vectors` is new to a basis V in blocks (n, m), with M V in `weighted`: W, W' M W = I and W' M V = 0."""
     lengths = np.sqrt(np.maximum(np.einsum("ij,ij->j", vectors, mass @ vectors), 0.0))
     vectors = _without(vectors[:, lengths > 0.0] / lengths[lengths > 0.0], basis, weighted)
@@ -61,7 +64,7 @@ def fresh_directions(mass: Any, basis: Sequence[Any], weighted: Sequence[Any], v
     return fresh @ np.linalg.inv(np.linalg.cholesky(fresh.T @ (mass @ fresh))).T
 
 
-def _without(vectors: Any, basis: Sequence[Any], weighted: Sequence[Any]) -> Any:
+def _without(vectors: np.ndarray, basis: Sequence[Any], weighted: Sequence[Any]) -> Any:
     for block, heavy in zip(basis, weighted, strict=True):
         vectors = vectors - block @ (heavy.T @ vectors)
     return vectors

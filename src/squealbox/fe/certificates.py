@@ -12,9 +12,9 @@ place of those believed to be there; after that it is halved. What det Q turns i
 
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.factorisation import Factor, SingularMatrix, factor
 from squealbox.fe.pencil import Pencil, vibrating
@@ -59,10 +59,10 @@ class Certificate:
 
 def certificate(
     pencil: Pencil,
-    eigenvalues: Any,
+    eigenvalues: ArrayLike,
     band: tuple[float, float],
     *,
-    believed: Any = (),
+    believed: ArrayLike = (),
     largest_growth: float | None = None,
     most: int = MOST,
     phases: dict[complex, float] | None = None,
@@ -115,7 +115,9 @@ class _TooMany(Exception):
 class _Winding:
     """Phases of det Q(lambda) and their rates along a contour, beside those of eigenvalues believed to be there."""
 
-    def __init__(self, pencil: Pencil, known: Any, probe: float, most: int, phases: dict[complex, float]) -> None:
+    def __init__(
+        self, pencil: Pencil, known: np.ndarray, probe: float, most: int, phases: dict[complex, float]
+    ) -> None:
         self.pencil, self.believed, self.probe, self.most, self.made = pencil, known, probe, most, 0
         self.phases = phases
         self.counted: set[complex] = set()
@@ -187,7 +189,7 @@ def _wrapped(angle: float) -> float:
     return float((angle + np.pi) % (2.0 * np.pi) - np.pi)
 
 
-def _left_side(known: Any, low: float, high: float) -> float:
+def _left_side(known: np.ndarray, low: float, high: float) -> float:
     """A growth rate a little below 0 in the widest gap between the known modes of the band."""
     deepest = -0.05 * low
     rates = known.real[(known.imag > 0.9 * low) & (known.imag < 1.1 * high)]
@@ -200,7 +202,7 @@ def certified_band(band: tuple[float, float]) -> tuple[float, float]:
     return 0.9 * band[0], 1.05 * band[1]
 
 
-def _band_gaps(known: Any, band: tuple[float, float]) -> tuple[float, float]:
+def _band_gaps(known: np.ndarray, band: tuple[float, float]) -> tuple[float, float]:
     """The band [rad/s] with its ends moved outwards, by up to a tenth, into the widest gap between known modes."""
     near = known[known.real > -0.1 * known.imag].imag
     ends = []
@@ -211,6 +213,6 @@ def _band_gaps(known: Any, band: tuple[float, float]) -> tuple[float, float]:
     return ends[0], ends[1]
 
 
-def _widest(marks: Any) -> float:
+def _widest(marks: np.ndarray) -> float:
     place = int(np.argmax(np.diff(marks)))
     return float(0.5 * (marks[place] + marks[place + 1]))

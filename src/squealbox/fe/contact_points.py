@@ -18,7 +18,9 @@ class ContactPoints:
         self.frame, self.other, self.touched = frame, other, touched
         self._found: dict[str, list[Any]] = {key: [] for key in (*ROWS, "area", "place", "angle", "side")}
 
-    def add(self, face: FacePoints, body: int, directions: tuple[Any, Any, Any], below: Any, angle: Any) -> None:
+    def add(
+        self, face: FacePoints, body: int, directions: tuple[Any, Any, Any], below: np.ndarray, angle: np.ndarray
+    ) -> None:
         """A lining's face with its directions into the other body, along and across sliding, each (3, k).
 
         below (3, k) [m] is the place on the other body under each point, angle (k,) [rad] from the lining's middle.

@@ -18,7 +18,7 @@ from squealbox.system import InvalidSystem
 MOST = 1500  # freedoms at contacts that a dense system can hold
 
 
-def craig_bampton_basis(pencil: Pencil, kept: Any, top: float) -> Any:
+def craig_bampton_basis(pencil: Pencil, kept: np.ndarray, top: float) -> Any:
     """Columns V (n, m), V' M V = I: static shapes of the `kept` freedoms, and modes below `top` [Hz] with those held.
 
     Raises `InvalidSystem` where there are too many freedoms to keep.

@@ -266,7 +266,7 @@ def _patch(pad: MeshedBody, middle: float, offset: float, piston: float, height:
     return area @ pad.points(np.array([x, y, np.full(len(x), height)]))[2]
 
 
-def _directions(place: Any, sign: float) -> tuple[Any, Any, Any]:
+def _directions(place: np.ndarray, sign: float) -> tuple[Any, Any, Any]:
     """Unit vectors (3, k) at places: into the disc, in the sense of its turning, and outwards."""
     r = np.hypot(place[0], place[1])
     cosine, sine, nothing = place[0] / r, place[1] / r, np.zeros(len(r))

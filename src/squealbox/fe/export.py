@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.extras import extra
 from squealbox.fe.grids import MeshedBody
@@ -13,7 +14,7 @@ from squealbox.fe.meshed import MeshedBrake
 FORMATS = (".vtu", ".uff")
 
 
-def write_shape(brake: MeshedBrake, shape: Any, eigenvalue: complex, path: str | os.PathLike[str]) -> Path:
+def write_shape(brake: MeshedBrake, shape: ArrayLike, eigenvalue: complex, path: str | os.PathLike[str]) -> Path:
     """Write one complex mode on the corners of the elements to `path`, which ends in .vtu or .uff.
 
     Parameters
@@ -51,7 +52,7 @@ def write_shape(brake: MeshedBrake, shape: Any, eigenvalue: complex, path: str |
     return path
 
 
-def _corners(body: MeshedBody, values: Any) -> tuple[Any, Any, Any]:
+def _corners(body: MeshedBody, values: np.ndarray) -> tuple[Any, Any, Any]:
     """Places (k, 3), displacements (k, 3) and corners of the elements (cells, 8) in the order of VTK."""
     corner, cells = body.corners
     local = np.asarray(body.reference_corners).T.astype(int)
@@ -62,7 +63,7 @@ def _corners(body: MeshedBody, values: Any) -> tuple[Any, Any, Any]:
 VTK = ((0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1))
 
 
-def _write_universal(path: Path, places: Any, moved: Any, eigenvalue: complex) -> None:
+def _write_universal(path: Path, places: np.ndarray, moved: np.ndarray, eigenvalue: complex) -> None:
     with extra("fe"):
         import pyuff
 

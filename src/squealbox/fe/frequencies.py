@@ -1,13 +1,16 @@
 """First natural frequencies of exported matrices, to be held against those the code itself printed."""
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+
+if TYPE_CHECKING:
+    from scipy.sparse import sparray
 
 DENSE = 300
 
 
-def first_frequencies(mass: Any, stiffness: Any, count: int = 10) -> Any:
+def first_frequencies(mass: "sparray", stiffness: "sparray", count: int = 10) -> Any:
     """The lowest `count` frequencies [Hz] of K u = w^2 M u, ascending; rigid ones are 0 to rounding, as is w^2 < 0.
 
     Massless freedoms are allowed: the eigenvalues mu = 1 / (w^2 - s) of (K - s M)^-1 M at a shift s < 0 are looked for,
@@ -40,7 +43,7 @@ def first_frequencies(mass: Any, stiffness: Any, count: int = 10) -> Any:
     return np.sort(abs(rate.imag)) / (2.0 * np.pi)
 
 
-def _by_iteration(mass: Any, stiffness: Any, shift: float, count: int) -> Any:
+def _by_iteration(mass: "sparray", stiffness: "sparray", shift: float, count: int) -> Any:
     from scipy.sparse.linalg import LinearOperator, eigs, splu
 
     near = (stiffness - shift * mass).tocsc()

@@ -56,7 +56,9 @@ class FullBrake:
         onto = GrowingBasis([self.pencil(values)], self.basis)
         return with_shapes(onto, modes_on(onto, 0, self.base, band)[0])
 
-    def missed(self, values: Mapping[str, Any], eigenvalue: complex, x: Any, y: Any, like: Any) -> complex | None:
+    def missed(
+        self, values: Mapping[str, Any], eigenvalue: complex, x: np.ndarray, y: np.ndarray, like: tuple[bool, type]
+    ) -> complex | None:
         """The estimate [1/s] of the full brake's eigenvalue less this one's, for its right and left shape x and y (m,).
 
         To first order what the matrices on the basis lack, to second what the basis does, as `projection` has it. None

@@ -38,7 +38,7 @@ class FacePoints:
     area: Any
     rows: tuple[Any, Any, Any]
 
-    def along(self, direction: Any) -> Any:
+    def along(self, direction: np.ndarray) -> Any:
         """Rows (k, n) of the displacement along a direction (3, k)."""
         return sum(sparse.diags_array(direction[i]) @ self.rows[i] for i in range(3))
 
@@ -92,7 +92,7 @@ class MeshedBody:
         local = np.argmax(np.abs(steps), axis=1)
         return np.stack([local, np.sign(steps[np.arange(3), local])], axis=1).astype(int)
 
-    def _shapes(self, share: Any) -> tuple[Any, Any]:
+    def _shapes(self, share: np.ndarray) -> tuple[Any, Any]:
         """Shape functions (20, k) at shares (3, k) of an element's sides, and their slopes (20, 3, k) by the shares."""
         local = np.empty_like(share)
         for axis, (where, sense) in enumerate(self._senses):
@@ -175,7 +175,7 @@ class MeshedBody:
         found[:, self.freedoms] = r * np.cos(theta), r * np.sin(theta), z
         return found
 
-    def stiffness(self, poisson: float, inside: Any = None) -> Any:
+    def stiffness(self, poisson: float, inside: np.ndarray | None = None) -> Any:
         """K [N/m] for a Young's modulus of 1 N/m^2, of the elements marked `inside` or all.
 
         With H_aibj = int dphi_a/dx_i dphi_b/dx_j, K_aibj = lam H_aibj + mu (H_ajbi + delta_ij sum_k H_akbk).
@@ -192,7 +192,7 @@ class MeshedBody:
             element[:, :, axis, :, axis] += alike
         return self._assembled(element.reshape(count, 3 * shapes, 3 * shapes), inside)
 
-    def mass(self, inside: Any = None) -> Any:
+    def mass(self, inside: np.ndarray | None = None) -> Any:
         """M [kg] for a density of 1 kg/m^3, of the elements marked `inside` or all."""
         values, _, weight = self._column
         product = np.einsum("aq,bq,eq->eab", values, values, weight, optimize=True)
@@ -224,7 +224,7 @@ class MeshedBody:
         )
         return values, found, weight * 2.0 * r * cross * (wide * high)[:, None]
 
-    def _assembled(self, element: Any, inside: Any, *, turned: bool = True) -> Any:
+    def _assembled(self, element: np.ndarray, inside: np.ndarray | None, *, turned: bool = True) -> Any:
         """Matrices (r z, 60, 60) of the elements about the angle 0, turned to where each is and summed up."""
         marked = np.arange(self.cells.shape[1]) if inside is None else np.flatnonzero(inside)
         i, j, k = self.cells[:, marked]
@@ -271,7 +271,7 @@ class MeshedBody:
             place.reshape(3, -1), area.ravel(), self._rows(values, np.repeat(elements, len(weight)))
         )  # fmt: skip
 
-    def points(self, place: Any) -> tuple[Any, Any, Any]:
+    def points(self, place: np.ndarray) -> tuple[Any, Any, Any]:
         """U_x, U_y, U_z (k, n) at places (3, k) [m] in the body or on its faces."""
         r, theta = np.hypot(place[0], place[1]), np.arctan2(place[1], place[0])
         theta = (theta - self.theta[0]) % (2.0 * np.pi) + self.theta[0]
@@ -288,7 +288,7 @@ class MeshedBody:
         share[1] = 0.5 * (s + 1.0)
         return self._rows(self._shapes(share)[0], self._lookup[tuple(cell)])
 
-    def _rows(self, values: Any, elements: Any) -> tuple[Any, Any, Any]:
+    def _rows(self, values: np.ndarray, elements: np.ndarray) -> tuple[Any, Any, Any]:
         """Rows of the three displacements from shape functions (20, k) in the elements (k,)."""
         shapes, count = values.shape
         where = np.tile(np.arange(count), shapes)
@@ -301,7 +301,7 @@ class MeshedBody:
         return rows[0], rows[1], rows[2]
 
 
-def _arc(half: float, s: Any) -> tuple[Any, Any]:
+def _arc(half: float, s: np.ndarray) -> tuple[Any, Any]:
     """g (2, k) of the module's head at s, for the half angle of an element, and its slope by s."""
     flat = 1.0 - np.cos(half)
     return (
@@ -310,7 +310,7 @@ def _arc(half: float, s: Any) -> tuple[Any, Any]:
     )
 
 
-def _turn(angle: Any) -> Any:
+def _turn(angle: float | np.ndarray) -> Any:
     """R(angle): a turn about z, (3, 3, ...)."""
     cosine, sine, one = np.cos(angle), np.sin(angle), np.ones_like(angle)
     return np.array([[cosine, -sine, 0.0 * one], [sine, cosine, 0.0 * one], [0.0 * one, 0.0 * one, one]])

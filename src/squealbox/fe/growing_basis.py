@@ -9,7 +9,7 @@ per linearisation are the residuals of the modes looked at, and one solve for ea
 """
 
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from scipy import sparse
@@ -18,6 +18,9 @@ from squealbox.factorisation import is_symmetric
 from squealbox.fe.basis import fresh_directions
 from squealbox.fe.pencil import Pencil
 from squealbox.fe.small import Small
+
+if TYPE_CHECKING:
+    from scipy.sparse import sparray
 
 ROWS = ("n", "d", "t", "normal", "across")
 
@@ -29,14 +32,14 @@ class _Product:
     as they are. `whole` holds A V in double precision for the matrix that the basis is orthogonal by.
     """
 
-    def __init__(self, matrix: Any) -> None:
+    def __init__(self, matrix: "sparray") -> None:
         self.matrix, self.symmetric = matrix, is_symmetric(matrix)
         self.right: list[Any] = []
         self.left: list[Any] = self.right if self.symmetric else []
         self.whole: list[Any] | None = None
         self.gram = np.zeros((0, 0))
 
-    def extend(self, basis: Sequence[Any], fresh: Any) -> None:
+    def extend(self, basis: Sequence[Any], fresh: np.ndarray) -> None:
         new = self.matrix @ fresh
         above = np.concatenate([np.zeros((0, fresh.shape[1])), *(block.T @ new for block in basis)])
         below = above.T
@@ -53,14 +56,14 @@ class _Product:
 class _SparseRows:
     """A V of one sparse table A (contacts, n)."""
 
-    def __init__(self, matrix: Any) -> None:
+    def __init__(self, matrix: "sparray") -> None:
         self.matrix, self.dense = matrix, np.zeros((matrix.shape[0], 0))
 
 
 class GrowingBasis:
     """Columns V (n, m), V' M V = I for the M of the first pencil, in `blocks`, and all `pencils` on them."""
 
-    def __init__(self, pencils: Sequence[Pencil], basis: Any) -> None:
+    def __init__(self, pencils: Sequence[Pencil], basis: np.ndarray) -> None:
         self.pencils = list(pencils)
         self._products: list[_Product] = []
         self._tables: list[_SparseRows] = []
@@ -76,7 +79,7 @@ class GrowingBasis:
         """Number of columns."""
         return sum(int(block.shape[1]) for block in self.blocks)
 
-    def add(self, vectors: Any) -> None:
+    def add(self, vectors: np.ndarray) -> None:
         """Take in what is new of the columns of `vectors` (n, k)."""
         self._extend(fresh_directions(self.pencils[0].M, self.blocks, self._of[0][0].whole, vectors))
 
@@ -126,7 +129,7 @@ class GrowingBasis:
             damping = damping + rows["across"].T @ (sliding.across[:, None] * rows["across"])
         return Small(mass, damping, stiffness)
 
-    def residual(self, i: int, values: Any, x: Any) -> Any:
+    def residual(self, i: int, values: np.ndarray, x: np.ndarray) -> Any:
         """Q(lambda_k) V x_k, its real parts and then its imaginary ones (n, 2k)."""
         found = self._summed([product.right for product in self._of[i]], values, x)
         sliding, rows = self.pencils[i].sliding, self._rows[i]
@@ -144,7 +147,7 @@ class GrowingBasis:
             found += rows["across"].matrix.T @ (sliding.across[:, None] * (rows["across"].dense @ moving))
         return found
 
-    def left_residual(self, i: int, values: Any, y: Any) -> Any:
+    def left_residual(self, i: int, values: np.ndarray, y: np.ndarray) -> Any:
         """Q(lambda_k)^H V y_k, its real parts and then its imaginary ones (n, 2k)."""
         back = np.conj(values)
         found = self._summed([product.left for product in self._of[i]], back, y)
@@ -162,14 +165,14 @@ class GrowingBasis:
             found += rows["across"].matrix.T @ (sliding.across[:, None] * (rows["across"].dense @ moving))
         return found
 
-    def _summed(self, products: list[list[Any]], values: Any, x: Any) -> Any:
+    def _summed(self, products: list[list[Any]], values: np.ndarray, x: np.ndarray) -> Any:
         """(lambda^2 M + lambda C + K) V x from the products with M, C and K."""
         found = np.zeros((self.pencils[0].size, 2 * x.shape[1]))
         for blocks, factor in zip(products, (values**2, values, np.ones_like(values)), strict=True):
             times(blocks, parts(x * factor).astype(np.float32), found)
         return found
 
-    def _extend(self, fresh: Any) -> None:
+    def _extend(self, fresh: np.ndarray) -> None:
         fresh = np.ascontiguousarray(fresh)
         for product in self._products:
             product.extend(self.blocks, fresh)
@@ -182,7 +185,7 @@ class GrowingBasis:
         tables = {name: getattr(contacts, name, None) for name in ROWS}
         return {n: self._known(self._tables, _SparseRows, table) for n, table in tables.items() if table is not None}
 
-    def _known(self, among: list[Any], kind: type, matrix: Any) -> Any:
+    def _known(self, among: list[Any], kind: type, matrix: "sparray") -> Any:
         for one in among:
             if equal(one.matrix, matrix):
                 return one
@@ -190,12 +193,12 @@ class GrowingBasis:
         return among[-1]
 
 
-def parts(x: Any) -> Any:
+def parts(x: np.ndarray) -> Any:
     """Real parts of complex columns (m, k), and then their imaginary ones: (m, 2k)."""
     return np.concatenate([x.real, x.imag], axis=1)
 
 
-def times(blocks: Sequence[Any], x: Any, onto: Any = None) -> Any:
+def times(blocks: Sequence[Any], x: np.ndarray, onto: np.ndarray | None = None) -> Any:
     """V x for V in blocks of columns and x (m, k), all real, added to `onto` where it is given."""
     found = np.zeros((blocks[0].shape[0], x.shape[1])) if onto is None else onto
     start = 0
@@ -205,7 +208,7 @@ def times(blocks: Sequence[Any], x: Any, onto: Any = None) -> Any:
     return found
 
 
-def equal(one: Any, other: Any) -> bool:
+def equal(one: "sparray", other: "sparray") -> bool:
     """True for two sparse arrays with the same entries in the same places."""
     if one is other:
         return True

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.contacts import Contacts
 from squealbox.fe.pairs import Pair, read_pairs
@@ -35,7 +36,7 @@ class Rotation(DataSheet):
     axis: Any = (0.0, 0.0, 1.0)
     point: Any = (0.0, 0.0, 0.0)
 
-    def velocity(self, place: Any) -> Any:
+    def velocity(self, place: np.ndarray) -> Any:
         """Velocity at `place` (3,) [m] for 1 rad/s [m/s]."""
         axis = _three("Rotation", "axis", self.axis)
         return np.cross(axis / np.linalg.norm(axis), place - _three("Rotation", "point", self.point, zero=True))
@@ -50,7 +51,7 @@ class CoordinateSystem(DataSheet):
     axis: Any = (0.0, 0.0, 1.0)
     across: Any = (1.0, 0.0, 0.0)
 
-    def directions(self, place: Any) -> Any:
+    def directions(self, place: ArrayLike | None) -> Any:
         """Columns are the local directions in global ones, shape (3, 3); `place` [m] matters where cylindrical."""
         e3 = _three("CoordinateSystem", "axis", self.axis)
         e3 = e3 / np.linalg.norm(e3)
@@ -211,7 +212,7 @@ class _ContactRows:
         except KeyError as error:
             raise MatrixFileError(path, f"node {node} has no place in the file of nodes", pair.line) from error
 
-    def _row(self, path: Path, pair: Pair, direction: Any) -> Any:
+    def _row(self, path: Path, pair: Pair, direction: np.ndarray) -> Any:
         from scipy.sparse import csr_array
 
         columns: list[int] = []
@@ -242,7 +243,7 @@ class _ContactRows:
         return fixed is not None and bool(np.any((fixed[:, 0] == node) & (fixed[:, 1] == direction)))
 
 
-def _three(owner: str, name: str, value: Any, *, zero: bool = False) -> Any:
+def _three(owner: str, name: str, value: ArrayLike, *, zero: bool = False) -> Any:
     array = np.asarray(value, dtype=float) if np.shape(value) == (3,) else None
     if array is None or not np.all(np.isfinite(array)) or (not zero and not np.any(array)):
         raise ParameterError(owner, name, value, "three finite numbers, not all zero")

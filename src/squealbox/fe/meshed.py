@@ -11,9 +11,10 @@ so each point may lift off; how many do, and what friction adds to the pressure 
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy import sparse
 
 from squealbox.contacts import Contacts, unchanging
@@ -23,6 +24,9 @@ from squealbox.fe.undamped_modes import RealModes, real_modes
 from squealbox.fe.wear import Pressed, Worn, run_in
 from squealbox.parameters import DataSheet, ParameterError, parameter
 from squealbox.system import Equilibrium, System, equilibrium
+
+if TYPE_CHECKING:
+    from scipy.sparse import sparray
 
 OWN = "chosen here"
 
@@ -69,7 +73,7 @@ class MeshedStructure:
     bodies: tuple[MeshedBody, ...]
     kept: Any
 
-    def by_body(self, values: Any) -> list[Any]:
+    def by_body(self, values: ArrayLike) -> list[Any]:
         """Of values (n, ...) on the freedoms those of each body, with zeros where it is held."""
         sizes = [body.size for body in self.bodies]
         whole = np.zeros((sum(sizes), *np.shape(values)[1:]), dtype=np.asarray(values).dtype)
@@ -92,7 +96,7 @@ def longest_side(where: str) -> Any:
     return parameter("m", 1e-4, default=0.012, meaning=f"longest side of an element {where}", source=OWN)
 
 
-def some_of(inside: Any, sheet: str, chamfer: float) -> Any:
+def some_of(inside: np.ndarray, sheet: str, chamfer: float) -> Any:
     """The places that hold; `ParameterError` where the chamfer of a sheet leaves none."""
     if not np.any(inside):
         raise ParameterError(sheet, "chamfer", chamfer, "an angle that leaves some of the lining to touch")
@@ -195,7 +199,7 @@ class MeshedBrake(Design):
         loads = tuple((name, float(value)) for name, value in self.wearing_under().items())
         return worn_linings(self._sums(made, self.touching(made)), loads, self.followers, friction, depth)
 
-    def _sums(self, made: MeshedStructure, touching: Any) -> tuple[Any, ...]:
+    def _sums(self, made: MeshedStructure, touching: np.ndarray) -> tuple[Any, ...]:
         """What `summed` takes."""
         elastic = tuple((name, *(float(x) for x in vars_of(part))) for name, part in self.materials().items())
         springs = tuple((name, float(value)) for name, value in self.held_by().items())
@@ -209,7 +213,7 @@ class MeshedBrake(Design):
         state = equilibrium(self.system()) if state is None else state
         return Preload(state, *about, np.zeros(len(touching)) if worn is None else worn.depth)
 
-    def shares(self, shape: Any) -> dict[str, tuple[float, float]]:
+    def shares(self, shape: np.ndarray) -> dict[str, tuple[float, float]]:
         """Each component's share of a mode's kinetic and of its strain energy, for a shape (n,)."""
         energies = {
             name: tuple(float(np.real(np.vdot(shape, matrix @ shape))) for matrix in pair)
@@ -258,7 +262,11 @@ def vars_of(material: Material) -> tuple[float, float, float]:
 
 @lru_cache(maxsize=2)
 def summed(
-    made: MeshedStructure, elastic: Any, springs: Any, contact: float, touching: bytes
+    made: MeshedStructure,
+    elastic: tuple[tuple[str, float, float, float], ...],
+    springs: tuple[tuple[str, float], ...],
+    contact: float,
+    touching: bytes,
 ) -> tuple[tuple[Any, Any, Any], tuple[Any, ...]]:
     """M, C and K of a structure, and the rows normal, n, along and across of its contacts.
 
@@ -276,7 +284,9 @@ def summed(
 
 
 @lru_cache(maxsize=8)
-def worn_linings(sums: Any, loads: Any, followers: str, friction: float, depth: float) -> Worn:
+def worn_linings(
+    sums: tuple[Any, ...], loads: tuple[tuple[str, float], ...], followers: str, friction: float, depth: float
+) -> Worn:
     """What running in wears off the linings of a brake that `summed` sums up; kept, because sweeps ask for it again."""
     made, _, springs, contact, touching = sums
     some = np.frombuffer(touching, dtype=np.int64)
@@ -316,14 +326,14 @@ class FreedomsOfBodies:
         """Where a body's freedoms stand."""
         return np.arange(self.starts[body], self.starts[body + 1])
 
-    def square(self, matrix: Any, body: int) -> Any:
+    def square(self, matrix: "sparray", body: int) -> Any:
         """A body's matrix on all freedoms."""
         inside = self.rows(sparse.csr_array(matrix)[self.inner[body]], body)
         before, after = self.starts[body], self.size - self.starts[body + 1]
         ends = np.concatenate([np.zeros(before), inside.indptr, np.full(after, inside.indptr[-1])]).astype(np.int32)
         return sparse.csr_array((inside.data, inside.indices, ends), shape=(self.size, self.size))
 
-    def rows(self, table: Any, body: int) -> Any:
+    def rows(self, table: "sparray", body: int) -> Any:
         """Rows (k, n of the body) on all freedoms."""
         inside = sparse.csr_array(table)
         if len(self.inner[body]) < inside.shape[1]:
@@ -331,7 +341,7 @@ class FreedomsOfBodies:
         where = (inside.indices + self.starts[body]).astype(np.int32)
         return sparse.csr_array((inside.data, where, inside.indptr), shape=(inside.shape[0], self.size))
 
-    def pin(self, face: FacePoints, body: int, direction: Any) -> Any:
+    def pin(self, face: FacePoints, body: int, direction: ArrayLike) -> Any:
         """The row (1, n) of a face's mean displacement along a direction (3,)."""
         directions = np.repeat(np.asarray(direction)[:, None], len(face.area), axis=1)
         share = sparse.csr_array((face.area / np.sum(face.area))[None, :])

@@ -219,7 +219,7 @@ def _ring(radius: float, wall: float, deep: float, size: float) -> MeshedBody:
     return MeshedBody(breaks(radius, radius + wall, size, 2), around, breaks(0.0, deep, size, 2), closed=True)
 
 
-def _directions(place: Any) -> tuple[Any, Any, Any]:
+def _directions(place: np.ndarray) -> tuple[Any, Any, Any]:
     """Unit vectors (3, k) at places: outwards into the drum, in the sense of its turning, and along its axis."""
     r = np.hypot(place[0], place[1])
     cosine, sine, nothing = place[0] / r, place[1] / r, np.zeros(len(r))

@@ -11,7 +11,7 @@ from squealbox.fe.structure import Structure
 from squealbox.parameters import ParameterError
 
 
-def displacements(structure: Structure, shapes: Any) -> tuple[Any, Any, Any]:
+def displacements(structure: Structure, shapes: np.ndarray) -> tuple[Any, Any, Any]:
     """Node numbers (k,), places (k, 3) [m] and displacements (k, 3, modes) of shapes (n, modes), complex, global axes
     where nodes have no coordinate system of their own; nodes without a freedom are left out.
     """
@@ -28,7 +28,7 @@ def displacements(structure: Structure, shapes: Any) -> tuple[Any, Any, Any]:
     return numbers[used], structure.nodes.places[used], moved[used]
 
 
-def write_vtu(path: str | os.PathLike[str], structure: Structure, eigenvalues: Any, shapes: Any) -> Path:
+def write_vtu(path: str | os.PathLike[str], structure: Structure, eigenvalues: np.ndarray, shapes: np.ndarray) -> Path:
     """Every mode's real and imaginary displacement at the nodes, as a cloud of points; needs meshio."""
     with extra("fe"):
         import meshio
@@ -42,7 +42,7 @@ def write_vtu(path: str | os.PathLike[str], structure: Structure, eigenvalues: A
     return Path(path)
 
 
-def write_uff(path: str | os.PathLike[str], structure: Structure, eigenvalues: Any, shapes: Any) -> Path:
+def write_uff(path: str | os.PathLike[str], structure: Structure, eigenvalues: np.ndarray, shapes: np.ndarray) -> Path:
     """Nodes (dataset 15) and complex modes (dataset 55, with their eigenvalues) of a universal file; needs pyuff."""
     with extra("fe"):
         import pyuff

@@ -5,7 +5,7 @@ lacks of the new shapes is left out, the less the smaller the change. Steady sli
 V' dK (q0 + V p) at the same load. Contacts stay what they are.
 """
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,6 +13,9 @@ from squealbox.fe.full_brake import FullBrake
 from squealbox.fe.reduced_brake import ReducedBrake
 from squealbox.parameters import ParameterError, known_names
 from squealbox.system import InvalidSystem
+
+if TYPE_CHECKING:
+    from scipy.sparse import sparray
 
 CONTACT = "contact"  # among the components: its stiffness is in the rows of the contacts too, so it is no part here
 
@@ -59,7 +62,9 @@ def with_mass(small: ReducedBrake, node: int, mass: float) -> ReducedBrake:
     return _added(small, mass * moves.T @ moves, 0.0, 0.0, 0.0)
 
 
-def _added(small: ReducedBrake, mass: Any, damping: Any, stiffness: Any, load: Any) -> ReducedBrake:
+def _added(
+    small: ReducedBrake, mass: "sparray", damping: "sparray", stiffness: "sparray", load: float | np.ndarray
+) -> ReducedBrake:
     arrays = dict(small.reduction.arrays)
     for field, change in (("M", mass), ("C", damping), ("K", stiffness), ("load", load)):
         arrays[field] = arrays[field] + change

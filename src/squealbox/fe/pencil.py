@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from scipy import sparse
@@ -11,6 +11,9 @@ from squealbox.loops import near_sliding
 from squealbox.memory_rows import no_memory
 from squealbox.sparse_sliding import Nearby, damping_across, damping_along, stiffness_of
 from squealbox.system import Equilibrium, InvalidSystem, System, equilibrium
+
+if TYPE_CHECKING:
+    from scipy.sparse import sparray
 
 MOST_DAMPED = 0.1  # damping ratio above which a pair is no candidate for squeal and is not shown
 
@@ -34,7 +37,7 @@ class Pencil:
 
     sliding: Sliding | None = None
 
-    def __init__(self, M: Any, C: Any, K: Any, elastic: Any) -> None:
+    def __init__(self, M: "sparray", C: "sparray", K: "sparray", elastic: "sparray") -> None:
         self.M, self.C, self.K, self.elastic = M, C, K, elastic
 
     @property
@@ -51,19 +54,19 @@ class Pencil:
         """Q(lambda), sparse and complex."""
         return sparse.csc_array(value**2 * self.M + value * self.C + self.K)
 
-    def stiffness_on(self, shapes: Any) -> tuple[Any, Any]:
+    def stiffness_on(self, shapes: np.ndarray) -> tuple[Any, Any]:
         """K_eff V and K_eff' V of columns V (n, k)."""
         return self.K @ shapes, self.K.T @ shapes
 
-    def damping_on(self, shapes: Any) -> Any:
+    def damping_on(self, shapes: np.ndarray) -> Any:
         """C_eff V of columns V (n, k)."""
         return self.C @ shapes
 
-    def residual(self, values: Any, shapes: Any) -> Any:
+    def residual(self, values: complex | np.ndarray, shapes: np.ndarray) -> Any:
         """Q(lambda_k) u_k for each column u_k of `shapes` (n, k)."""
         return self.K @ shapes + (self.C @ shapes) * values + (self.M @ shapes) * values**2
 
-    def backward_error(self, values: Any, shapes: Any) -> Any:
+    def backward_error(self, values: np.ndarray, shapes: np.ndarray) -> Any:
         """|Q(lambda) u| / ((|lambda|^2 |M| + |lambda| |C| + |K|) |u|) of each mode, norms by the largest row sum."""
         sizes = [float(abs(matrix).sum(axis=1).max()) for matrix in (self.M, self.C, self.K)]
         scale = np.abs(values) ** 2 * sizes[0] + np.abs(values) * sizes[1] + sizes[2]
@@ -105,7 +108,7 @@ class SlidingPencil(Pencil):
         lifted, system = self.sliding.lifted, self.sliding.system
         return symmetric_part(stiffness_of(system.K, system.contacts, 0.0 * lifted, lifted == 0.0))
 
-    def stiffness_on(self, shapes: Any) -> tuple[Any, Any]:
+    def stiffness_on(self, shapes: np.ndarray) -> tuple[Any, Any]:
         system, coupling, lifted = self.sliding.system, self.sliding.coupling[:, None], self.sliding.lifted[:, None]
         table = system.contacts
         felt = table.n @ shapes
@@ -116,7 +119,7 @@ class SlidingPencil(Pencil):
             weight = weight + lifted * (table.normal @ shapes)
         return right, system.K.T @ shapes - table.n.T @ weight
 
-    def damping_on(self, shapes: Any) -> Any:
+    def damping_on(self, shapes: np.ndarray) -> Any:
         table = self.sliding.system.contacts
         found = self.sliding.system.C @ shapes + table.d.T @ (self.sliding.along[:, None] * (table.t @ shapes))
         if table.across is not None:
@@ -148,11 +151,11 @@ def pencil_of(
     return SlidingPencil(sliding, state)
 
 
-def symmetric_part(matrix: Any) -> Any:
+def symmetric_part(matrix: "sparray") -> Any:
     """1/2 (A + A')."""
     return sparse.csr_array(0.5 * (matrix + matrix.T))
 
 
-def vibrating(values: Any) -> Any:
+def vibrating(values: np.ndarray) -> Any:
     """True for eigenvalues with Im > 0 whose damping ratio is below 0.1 in size."""
     return (values.imag > 0.0) & (np.abs(values.real) < MOST_DAMPED * np.abs(values))

@@ -104,7 +104,7 @@ def modes_on(
     return found, Residuals(asked, missed, missed_left, moved)
 
 
-def _pairs(small: Small, turns: Any, band: tuple[float, float]) -> Pairs:
+def _pairs(small: Small, turns: np.ndarray, band: tuple[float, float]) -> Pairs:
     """The modes in the band by condensation in undamped modes; where they do not settle, of the whole spectrum."""
     turned = Small(*(turns.T @ (matrix @ turns) for matrix in (small.M, small.C, small.K)))
     pairs = band_pairs(turned, band)
@@ -127,7 +127,7 @@ def with_shapes(onto: GrowingBasis, found: Projected) -> Projected:
     return replace(found, x=found.x / length, y=found.y * length, right=right / length, left=left)
 
 
-def residual_vectors(base: Factor, missed: Residuals, marked: Any) -> tuple[Any, Any]:
+def residual_vectors(base: Factor, missed: Residuals, marked: np.ndarray) -> tuple[Any, Any]:
     """Real and imaginary parts of du = K0^-1 r and dw = K0^-1 s of the marked modes, (n, 4k), and of r and s likewise.
 
     The estimate is <dw, du> in the energy of K0. Each pair is scaled so that both have the same energy, |dw| |du|: what
@@ -145,20 +145,20 @@ def residual_vectors(base: Factor, missed: Residuals, marked: Any) -> tuple[Any,
     return np.concatenate([moved, moved_left], axis=1), np.concatenate([right, left], axis=1)
 
 
-def _complex(columns: Any) -> Any:
+def _complex(columns: np.ndarray) -> Any:
     """Complex columns (n, k) from their parts (n, 2k)."""
     count = columns.shape[1] // 2
     return columns[:, :count] + 1j * columns[:, count:]
 
 
-def _paired(left: Any, right: Any) -> Any:
+def _paired(left: np.ndarray, right: np.ndarray) -> Any:
     """a_k^H b_k (k,) of complex columns given by their parts (n, 2k)."""
     count = left.shape[1] // 2
     real, swapped = (np.einsum("ij,ij->j", left, columns) for columns in (right, np.roll(right, count, axis=1)))
     return real[:count] + real[count:] + 1j * (swapped[:count] - swapped[count:])
 
 
-def main_directions(moved: Any, missed: Any, allowed: float) -> Any:
+def main_directions(moved: np.ndarray, missed: np.ndarray, allowed: float) -> Any:
     """The directions of scaled residual vectors that together hold all but `allowed` [1/s] of their energies.
 
     Residuals are at right angles to the basis, so K0^-1 of them is so in the energy of K0: what they hold is new to it.

@@ -39,7 +39,7 @@ def modes_near(pencil: Pencil, shift: complex, count: int, base: Factor | None =
     size, scale = pencil.size, abs(shift)
     base = factor(pencil.at(shift)) if base is None else base
 
-    def applied(state: Any) -> Any:
+    def applied(state: np.ndarray) -> Any:
         u, v = state[:size], state[size:] * scale
         p = -base.solve(pencil.C @ u + shift * (pencil.M @ u) + pencil.M @ v)
         return np.concatenate([p, (u + shift * p) / scale])
@@ -88,7 +88,7 @@ def full_modes(pencil: Pencil, band: tuple[float, float], count: int = 60) -> Fu
     return FullModes(every, columns, errors, not gaps, made)
 
 
-def _once(values: Any, shapes: Any) -> tuple[Any, Any]:
+def _once(values: np.ndarray, shapes: np.ndarray) -> tuple[Any, Any]:
     """Each mode once: the disks overlap, so an eigenvalue may have been found twice with the same shape."""
     order = np.argsort(values.imag, kind="stable")
     kept: list[int] = []

@@ -12,6 +12,7 @@ from functools import cached_property
 from typing import Any, ClassVar, Self
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.contacts import Contact
 from squealbox.design import Design
@@ -49,7 +50,7 @@ class ChangeAlong(DataSheet):
         super().__post_init__()
         object.__setattr__(self, "change", {name: np.asarray(value) for name, value in self.change.items()})
 
-    def at(self, field: str, value: Any) -> Any:
+    def at(self, field: str, value: ArrayLike) -> Any:
         """The change of a field at `value`, which may carry leading axes; 0.0 where the field does not change."""
         known = self.change.get(field)
         if known is None:
@@ -281,14 +282,14 @@ class ReducedBrake(Design):
         """What was added to C above the band."""
         return self.reduction.arrays.get("high", 0.0)
 
-    def _quickly(self, without: Any) -> tuple[Small, Equilibrium] | None:
+    def _quickly(self, without: float | np.ndarray) -> tuple[Small, Equilibrium] | None:
         """Linearised from tables of contacts, less some damping; None where that road does not go."""
         touching = len(self.reduction.contact_names) > 0
         if (touching and self.friction is None) or any(np.ndim(value) for value in self.values.values()):
             return None
         rows = {field: self.array(field) for field in FIELDS}
         rows["C"] = rows["C"] - without
-        if not touching:
+        if not touching or self.friction is None:
             return untouched(rows)
         return steady_small(rows, self.friction, np.asarray(self.reduction.unilateral), self.reduction.sums)
 
@@ -304,7 +305,7 @@ class ReducedBrake(Design):
         arrays = {**self.reduction.arrays, "across": None}
         return self.replace({"reduction": self.reduction.replace(arrays=arrays)})
 
-    def expand(self, shape: Any) -> Any:
+    def expand(self, shape: np.ndarray) -> Any:
         """A displacement or mode of the small system (m,) or (m, k) on all degrees of freedom, without q0."""
         return self.attached().basis @ shape
 
@@ -320,7 +321,7 @@ class ReducedBrake(Design):
         """The full design at the present values, or the full system."""
         return self.attached().at(self.present())
 
-    def missed(self, eigenvalue: complex, x: Any, y: Any) -> complex | None:
+    def missed(self, eigenvalue: complex, x: np.ndarray, y: np.ndarray) -> complex | None:
         """The estimate [1/s] of the full brake's eigenvalue less one found here, with right and left shape (m,).
 
         None where the full brake is not kept, or is another one: without its cross direction, or with another law.
@@ -351,7 +352,7 @@ class ReducedBrake(Design):
         return full
 
 
-def _in_range(axis: ChangeAlong, value: Any) -> Any:
+def _in_range(axis: ChangeAlong, value: ArrayLike) -> Any:
     number = np.asarray(value, dtype=float)
     if not np.all((number >= axis.low) & (number <= axis.high)):
         raise ParameterError(
@@ -366,7 +367,7 @@ def chebyshev_points(low: float, high: float, count: int) -> Any:
     return 0.5 * (low + high) - 0.5 * (high - low) * np.cos(angles)
 
 
-def lagrange(points: Any, value: Any) -> Any:
+def lagrange(points: np.ndarray, value: np.ndarray) -> Any:
     """Weights (..., points) of the interpolating polynomial."""
     gaps = value[..., None] - points
     weights = np.ones(gaps.shape)

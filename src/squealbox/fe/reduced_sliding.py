@@ -11,6 +11,7 @@ import numpy as np
 
 from squealbox.fe.small import Small
 from squealbox.friction import Table
+from squealbox.law import FrictionLaw
 from squealbox.static_deflection import ended
 from squealbox.system import Equilibrium
 
@@ -27,7 +28,7 @@ class WeightedSum:
     weight: Any = None
     value: Any = None
 
-    def at(self, weight: Any) -> Any:
+    def at(self, weight: np.ndarray) -> Any:
         """The sum for weights (contacts,), from the last one where few weights have changed but for a common factor."""
         if self.value is not None:
             both = (self.weight != 0.0) & (weight != 0.0)
@@ -41,7 +42,7 @@ class WeightedSum:
         self.weight, self.value = weight, self._over(np.flatnonzero(weight), weight)
         return self.value
 
-    def _over(self, rows: Any, weight: Any) -> Any:
+    def _over(self, rows: np.ndarray, weight: np.ndarray) -> Any:
         return (self.left[rows] * weight[rows, None]).T @ self.right[rows]
 
 
@@ -54,7 +55,7 @@ class Sums:
     across: Any
 
 
-def sums_of(rows: dict[str, Any], unilateral: Any, *, added: bool = True) -> Sums:
+def sums_of(rows: dict[str, Any], unilateral: np.ndarray, *, added: bool = True) -> Sums:
     """The sums of the contacts that press at q = 0, for mu = 1; not `added` up yet where they serve one value alone."""
     pressed = np.concatenate([rows["n"], rows["N0"][:, None]], axis=1)
     pushing, closed = WeightedSum(rows["d"], pressed), (rows["N0"] > 0.0) | ~unilateral
@@ -68,7 +69,7 @@ def sums_of(rows: dict[str, Any], unilateral: Any, *, added: bool = True) -> Sum
 
 
 def steady_small(
-    rows: dict[str, Any], law: Any, unilateral: Any, sums: Sums | None = None
+    rows: dict[str, Any], law: FrictionLaw, unilateral: np.ndarray, sums: Sums | None = None
 ) -> tuple[Small, Equilibrium] | None:
     """M, C_eff, K_eff and steady sliding; None where there is none that is settled, or the law has memory, is a
     family of laws, or leaves its range: then the general road answers, and says so.
@@ -129,7 +130,7 @@ def untouched(rows: dict[str, Any]) -> tuple[Small, Equilibrium] | None:
     return Small(rows["M"], rows["C"], rows["K"]), Equilibrium(q, nothing, nothing, nothing, yes, outcome, np.array(0))
 
 
-def without_friction(rows: dict[str, Any], unilateral: Any, small: Small, state: Equilibrium) -> tuple[Any, Any]:
+def without_friction(rows: dict[str, Any], unilateral: np.ndarray, small: Small, state: Equilibrium) -> tuple[Any, Any]:
     """C with the damping across the sliding direction, and the symmetric part of K less open contacts, (m, m) each.
 
     Of what `steady_small` found; friction's stiffness is in neither.
@@ -142,7 +143,7 @@ def without_friction(rows: dict[str, Any], unilateral: Any, small: Small, state:
     return damping, 0.5 * (elastic + elastic.T)
 
 
-def _square(rows: Any, weight: Any) -> Any:
+def _square(rows: np.ndarray, weight: np.ndarray) -> Any:
     """A' diag(w) A for w >= 0, by a product that knows it is symmetric."""
     if np.any(weight < 0.0):
         return (rows * weight[:, None]).T @ rows

@@ -28,7 +28,7 @@ from squealbox.fe.reduced_sliding import steady_small
 from squealbox.fe.small import Small
 from squealbox.fe.undamped_modes import real_modes
 from squealbox.sparse_sliding import Nearby, at_rest
-from squealbox.system import InvalidSystem, System, as_system
+from squealbox.system import DesignOrSystem, InvalidSystem, System, as_system
 
 Basis = Literal["enriched", "craig-bampton", "pod"]
 METHODS = ("enriched", "craig-bampton", "pod")
@@ -69,7 +69,7 @@ def reduce(
     alone; what still grows there is `reduction.high_growth`, and the summary says so. Raises `InvalidSystem` without
     steady sliding at a corner.
     """
-    low, high = _checked(band, varying, method)
+    low, high = _checked(band, varying or {}, method)
     ranges = dict(varying or {})
     system = as_system(design_or_system, linear=True)
     if not system.is_sparse:
@@ -125,7 +125,7 @@ def reduce(
     return small.replace({"reduction": reduction.replace(errors=tuple(errors))})
 
 
-def _corners(design: Any, ranges: Mapping[str, tuple[float, float]]) -> list[dict[str, float]]:
+def _corners(design: DesignOrSystem, ranges: Mapping[str, tuple[float, float]]) -> list[dict[str, float]]:
     """The corners of all ranges and their middle, but for the design itself, which is looked at anyway."""
     if not ranges:
         return []
@@ -145,21 +145,27 @@ def _present(design: Any, name: str) -> float:
     return float("nan") if value is None else float(value)
 
 
-def _checked(band: Any, varying: Any, method: str) -> tuple[float, float]:
+def _checked(band: tuple[float, float], varying: Mapping[str, tuple[float, float]], method: str) -> tuple[float, float]:
     if np.shape(band) != (2,) or not (np.all(np.isfinite(band)) and 0.0 < band[0] < band[1]):
         raise ValueError(f"band = {band!r}: expected (f1, f2) in Hz with 0 < f1 < f2")
     if method not in METHODS:
         raise ValueError(f"method = {method!r}: expected one of {', '.join(METHODS)}")
-    if len(varying or {}) > MOST_AXES:
+    if len(varying) > MOST_AXES:
         raise ValueError(f"varying holds {len(varying)} parameters: expected at most {MOST_AXES}, for their corners")
-    for name, bounds in (varying or {}).items():
+    for name, bounds in varying.items():
         if np.shape(bounds) != (2,) or not (np.all(np.isfinite(bounds)) and bounds[0] < bounds[1]):
             raise ValueError(f"varying[{name!r}] = {bounds!r}: expected (low, high) with low < high")
     return float(band[0]), float(band[1])
 
 
 def _first_basis(
-    method: str, design: Any, reference: Pencil, ranges: Any, band: Any, time: float, order: Order | None
+    method: str,
+    design: DesignOrSystem,
+    reference: Pencil,
+    ranges: Mapping[str, Any],
+    band: tuple[float, float],
+    time: float,
+    order: Order | None,
 ) -> tuple[Any, Any]:
     if method == "enriched":
         return basis_for(reference, band, order)
@@ -176,7 +182,7 @@ def _first_basis(
     return modes, _main_directions(reference, np.concatenate(shapes, axis=1))
 
 
-def _main_directions(pencil: Pencil, shapes: Any, share: float = 1e-5) -> Any:
+def _main_directions(pencil: Pencil, shapes: np.ndarray, share: float = 1e-5) -> Any:
     """The directions of `shapes` whose singular value is above `share` of the largest, V' M V = I."""
     lengths = np.sqrt(np.einsum("ij,ij->j", shapes, pencil.M @ shapes))
     shapes = shapes[:, lengths > 0.0] / lengths[lengths > 0.0]
@@ -187,7 +193,7 @@ def _main_directions(pencil: Pencil, shapes: Any, share: float = 1e-5) -> Any:
     return joined(pencil, np.zeros((pencil.size, 0)), first)
 
 
-def _touched(design: Any) -> Any:
+def _touched(design: DesignOrSystem) -> Any:
     """Degrees of freedom that a contact senses or acts on."""
     table = as_system(design, linear=True).contacts
     rows = [getattr(table, field) for field in ("n", "d", "t", "normal", "across")]
@@ -195,7 +201,7 @@ def _touched(design: Any) -> Any:
     return np.flatnonzero(used)
 
 
-def _with_statics(reference: SlidingPencil, pencils: list[SlidingPencil], basis: Any) -> Any:
+def _with_statics(reference: SlidingPencil, pencils: list[SlidingPencil], basis: np.ndarray) -> Any:
     """The basis with the differences of steady sliding between the corners and the reference."""
     moved = [pencil.state.q - reference.state.q for pencil in pencils]
     columns = [q for q in moved if np.any(q)]
@@ -245,7 +251,7 @@ def _axis(full: FullBrake, name: str, low: float, high: float, arrays: dict[str,
     return ChangeAlong(name=name, low=low, high=high, points=points, change=change)
 
 
-def _not_foreseen(name: str, samples: list[Any], found: list[Any], weights: Any) -> str:
+def _not_foreseen(name: str, samples: list[Any], found: list[Any], weights: np.ndarray) -> str:
     """The first field of `found` that the polynomial through `samples` misses; "" for none."""
     for field in FIELDS:
         if samples[0][field] is None:
@@ -265,7 +271,7 @@ def _between(ranges: Mapping[str, tuple[float, float]]) -> list[dict[str, float]
     return points if ranges else []
 
 
-def _damped_above(smalls: list[Small], elastic: Any, top: float, allowed: float) -> tuple[Any, float, float]:
+def _damped_above(smalls: list[Small], elastic: np.ndarray, top: float, allowed: float) -> tuple[Any, float, float]:
     """The least damping with which no mode above `top` [Hz] grows at any point, as far as it leaves the band alone.
 
     It acts on the directions that no right shape of a mode below `top`, at any point, has a part in: C_h u = 0 for
@@ -310,11 +316,11 @@ def _damped_above(smalls: list[Small], elastic: Any, top: float, allowed: float)
     return best
 
 
-def _damped(small: Small, damping: Any) -> Small:
+def _damped(small: Small, damping: np.ndarray) -> Small:
     return Small(small.M, small.C + damping, small.K)
 
 
-def _growth_above(values: Any, top: float) -> float:
+def _growth_above(values: np.ndarray, top: float) -> float:
     """The largest growth rate [1/s] of eigenvalues above `top` [rad/s], 0 where none grows."""
     growing = (np.abs(values.imag) > top) & (values.real > 1e-10 * np.abs(values))
     return float(np.max(values.real[growing], initial=0.0))

@@ -10,9 +10,10 @@ import os
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.fe.frequencies import first_frequencies
 from squealbox.fe.nodes import Nodes, read_nodes
@@ -31,6 +32,9 @@ from squealbox.fe.readers.matrix import (
 from squealbox.fe.readers.opening import open_matrices, read_labels
 from squealbox.fe.units import unit_system
 from squealbox.parameters import ParameterError
+
+if TYPE_CHECKING:
+    from scipy.sparse import sparray
 
 Source = str | os.PathLike[str] | tuple[str | os.PathLike[str], str]
 
@@ -90,7 +94,7 @@ class Structure:
             masses.append(float(ones @ (self.M @ ones)))
         return max(masses)
 
-    def doubts(self, frequencies: Any = None) -> tuple[str, ...]:
+    def doubts(self, frequencies: ArrayLike | None = None) -> tuple[str, ...]:
         """Sentences on what looks wrong for a brake: mass, first elastic frequency, massless and internal rows."""
         found = list(self.notes)
         if self.massless.any():
@@ -110,7 +114,7 @@ class Structure:
                 found.append(f"the first elastic frequency is {elastic[0]:.3g} Hz with {given}: check the units")
         return tuple(found)
 
-    def _named(self, mask: Any, most: int = 4) -> str:
+    def _named(self, mask: np.ndarray, most: int = 4) -> str:
         rows = np.flatnonzero(mask)
         words = ", ".join(shown_label(self.labels, int(row)) for row in rows[:most])
         return words + (", ..." if len(rows) > most else "")
@@ -119,7 +123,7 @@ class Structure:
 def read_matrices(
     *paths: str | os.PathLike[str],
     units: str | None = None,
-    nodes: Any = None,
+    nodes: str | os.PathLike[str] | None = None,
     labels: str | os.PathLike[str] | None = None,
 ) -> Structure:
     """The structure that these files hold together; a matrix is known by its name in the file, or by the file's.
@@ -157,7 +161,7 @@ def read_structure(
     mass: Source,
     damping: Source | None = None,
     units: str | None,
-    nodes: Any = None,
+    nodes: str | os.PathLike[str] | None = None,
     labels: str | os.PathLike[str] | None = None,
 ) -> Structure:
     """The structure of these files, each named for what it holds, in SI.
@@ -190,7 +194,12 @@ def _chosen(source: Source, kind: str, opened: dict[Path, MatrixFile]) -> tuple[
     return file, matrix
 
 
-def _aligned(chosen: dict[str, tuple[MatrixFile, FileMatrix]], units: str | None, nodes: Any, labels: Any) -> Structure:
+def _aligned(
+    chosen: dict[str, tuple[MatrixFile, FileMatrix]],
+    units: str | None,
+    nodes: str | os.PathLike[str] | None,
+    labels: str | os.PathLike[str] | None,
+) -> Structure:
     files = {kind: file for kind, (file, _) in chosen.items()}
     found = {kind: matrix for kind, (_, matrix) in chosen.items()}
     order, places = _common(files, found, labels)
@@ -229,7 +238,9 @@ def _aligned(chosen: dict[str, tuple[MatrixFile, FileMatrix]], units: str | None
     return Structure(mass, damping, stiffness, order, fixed, units, places_of, digits, tuple(dict.fromkeys(notes)))
 
 
-def _common(files: dict[str, MatrixFile], found: dict[str, FileMatrix], given: Any) -> tuple[Any, dict[str, Any]]:
+def _common(
+    files: dict[str, MatrixFile], found: dict[str, FileMatrix], given: str | os.PathLike[str] | None
+) -> tuple[Any, dict[str, Any]]:
     """Labels of the rows of all matrices, and where the rows of each go."""
     sizes = {kind: matrix.matrix.shape[0] for kind, matrix in found.items()}
     most = max(sizes.values())
@@ -259,7 +270,7 @@ def _common(files: dict[str, MatrixFile], found: dict[str, FileMatrix], given: A
     return decoded_labels(union), places
 
 
-def _placed(matrix: Any, places: Any, size: int) -> Any:
+def _placed(matrix: "sparray", places: np.ndarray | None, size: int) -> Any:
     if places is None or (len(places) == size and np.array_equal(places, np.arange(size))):
         return matrix.tocsr()
     from scipy.sparse import csr_array
@@ -268,7 +279,7 @@ def _placed(matrix: Any, places: Any, size: int) -> Any:
     return csr_array((whole.data, (places[whole.row], places[whole.col])), shape=(size, size))
 
 
-def _scaled(matrix: Any, unit: Any, factor: float) -> Any:
+def _scaled(matrix: "sparray", unit: np.ndarray, factor: float) -> Any:
     scaled = matrix.tocsr().copy()
     rows = np.repeat(np.arange(matrix.shape[0]), np.diff(scaled.indptr))
     scaled.data = scaled.data * (factor * unit[rows] * unit[scaled.indices])

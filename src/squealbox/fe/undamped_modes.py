@@ -1,12 +1,15 @@
 """Undamped modes of K0 u = w^2 M u below a frequency, none missed: Sturm's count says beforehand how many there are."""
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from scipy.linalg import eigh
 
 from squealbox.factorisation import Factor, Order, SingularMatrix, factor
+
+if TYPE_CHECKING:
+    from scipy.sparse import sparray
 
 DENSE = 400  # rows up to which LAPACK finds all modes at once
 MOST = 3000  # modes that are looked for at once
@@ -38,7 +41,7 @@ class RealModes:
         return self.count == len(self.frequency)
 
 
-def count_below(stiffness: Any, mass: Any, frequency: float, order: Order | None = None) -> int:
+def count_below(stiffness: "sparray", mass: "sparray", frequency: float, order: Order | None = None) -> int:
     """Number of undamped modes below `frequency` [Hz]: negative eigenvalues of K - w^2 M (K, M symmetric, M >= 0).
 
     `order` is that of a factor of K, where there is one.
@@ -46,7 +49,7 @@ def count_below(stiffness: Any, mass: Any, frequency: float, order: Order | None
     return factor(stiffness - (2.0 * np.pi * frequency) ** 2 * mass, symmetric=True, order=order).inertia[1]
 
 
-def real_modes(stiffness: Any, mass: Any, top: float, order: Order | None = None) -> RealModes:
+def real_modes(stiffness: "sparray", mass: "sparray", top: float, order: Order | None = None) -> RealModes:
     """All undamped modes below `top` [Hz], by shift-invert Lanczos about 0 with blocks of columns.
 
     A body that is free to move makes K0 singular; it is then shifted by a small share of (2 pi top)^2 M. `order`
@@ -74,7 +77,7 @@ def real_modes(stiffness: Any, mass: Any, top: float, order: Order | None = None
     return RealModes(np.sqrt(np.maximum(values, 0.0)) / (2.0 * np.pi), shapes, top, count, base, shift)
 
 
-def _base(stiffness: Any, mass: Any, top: float, order: Order | None) -> tuple[Factor, float]:
+def _base(stiffness: "sparray", mass: "sparray", top: float, order: Order | None) -> tuple[Factor, float]:
     """The factor of K0, or of K0 + shift M where K0 is singular or so nearly that its rigid motions drown all else."""
     rate = (2.0 * np.pi * top) ** 2
     try:
@@ -89,7 +92,7 @@ def _base(stiffness: Any, mass: Any, top: float, order: Order | None) -> tuple[F
     return factor(stiffness + 1e-4 * rate * mass, symmetric=True, order=order), 1e-4 * rate
 
 
-def _slowest(base: Factor, mass: Any, count: int) -> tuple[Any, Any]:
+def _slowest(base: Factor, mass: "sparray", count: int) -> tuple[Any, Any]:
     """The `count` largest eigenvalues of A^-1 M and their shapes, A that of the factor: block Lanczos, lengths by M."""
     size = mass.shape[0]
     start = np.random.default_rng(7).standard_normal((size, BLOCK))
@@ -132,7 +135,7 @@ def _place(columns: list[Any], i: int) -> slice:
     return slice(before, before + columns[i].shape[1])
 
 
-def _orthonormal(vectors: Any, mass: Any) -> tuple[Any, Any, Any]:
+def _orthonormal(vectors: np.ndarray, mass: "sparray") -> tuple[Any, Any, Any]:
     """Columns W with W' M W = I, M W, and L with W L = `vectors`; columns that depend on others are left out."""
     whole: Any = None
     for _ in range(2):
@@ -146,7 +149,7 @@ def _orthonormal(vectors: Any, mass: Any) -> tuple[Any, Any, Any]:
     return vectors, heavy, whole
 
 
-def _dense(stiffness: Any, mass: Any, count: int) -> tuple[Any, Any]:
+def _dense(stiffness: "sparray", mass: "sparray", count: int) -> tuple[Any, Any]:
     """By LAPACK with the roles of K and M exchanged where M is singular."""
     dense, weight = stiffness.toarray(), mass.toarray()
     if np.all(np.linalg.eigvalsh(weight) > 1e-14 * np.max(weight)):

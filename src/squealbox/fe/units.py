@@ -21,7 +21,7 @@ class UnitSystem:
         """One unit of energy in J."""
         return self.mass * self.length**2 / self.time**2
 
-    def scales(self, labels: Any, size: int) -> Any:
+    def scales(self, labels: np.ndarray | None, size: int) -> Any:
         """What one unit of each freedom is in SI, shape (n,): a length for displacements, 1 for rotations.
 
         Freedoms without labels are taken as displacements.

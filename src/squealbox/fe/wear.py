@@ -19,9 +19,10 @@ spring keeps the force it had when the pad was new. Both are rigid motions R of 
 gap, and what is left of the depth when they are taken out, g - (R . e_n) c, is what makes a worn contact another one.
 """
 
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy import sparse
 
 from squealbox.contacts import Contacts
@@ -30,6 +31,9 @@ from squealbox.friction import Coulomb
 from squealbox.parameters import ParameterError, parameter
 from squealbox.sparse_sliding import Nearby, SlidingState, sliding_state
 from squealbox.system import InvalidSystem
+
+if TYPE_CHECKING:
+    from scipy.sparse import sparray
 
 STEPS = 8  # of one running in, each longer than the one before
 LONGER = 1.5  # times
@@ -66,7 +70,7 @@ def depth_worn() -> Any:
     return parameter("m", 0.0, default=0.0, meaning="mean depth worn off the linings since they were new")
 
 
-def check_depth(brake: str, running_in: Any, thickness: Any) -> None:
+def check_depth(brake: str, running_in: ArrayLike, thickness: float | np.ndarray) -> None:
     """Raise `ParameterError` where more is worn off than the lining is thick [m]."""
     if not np.all(np.asarray(running_in) < thickness):
         raise ParameterError(brake, "running_in", running_in, "less than the thickness of the lining")
@@ -77,7 +81,9 @@ def friction_while_wearing() -> Any:
     return parameter("-", 0.0, default=0.4, meaning="friction with which the linings wore")
 
 
-def run_in(brake: Pressed, mean: float, following: Any = None, steps: int = STEPS, longer: float = LONGER) -> Worn:
+def run_in(
+    brake: Pressed, mean: float, following: "sparray | None" = None, steps: int = STEPS, longer: float = LONGER
+) -> Worn:
     """Linings after `mean` [m] has been worn off them, in the mean over the area of all.
 
     following (n, n) are springs whose other ends come along with the lining, None where there are none. Raises
@@ -120,13 +126,13 @@ def _lengths(steps: int, longer: float) -> Any:
     return lengths / np.sum(lengths)
 
 
-def _softer(brake: Pressed, soft: Any) -> Any:
+def _softer(brake: Pressed, soft: float | np.ndarray) -> Any:
     """K with the stiffness of contacts times `soft` (k,)."""
     less = sparse.diags_array((1.0 - soft) * brake.contact * brake.area) @ brake.normal
     return sparse.csr_array(brake.stiffness - brake.normal.T @ less)
 
 
-def _sliding(brake: Pressed, soft: Any, depth: Any, start: Nearby | None) -> SlidingState:
+def _sliding(brake: Pressed, soft: float | np.ndarray, depth: float | np.ndarray, start: Nearby | None) -> SlidingState:
     """Steady sliding with contacts that are softer by `soft` (k,), after `depth` (k,) has been worn off."""
     spring = soft * brake.contact * brake.area
     contacts = Contacts(
@@ -148,7 +154,7 @@ def _sliding(brake: Pressed, soft: Any, depth: Any, start: Nearby | None) -> Sli
     return found
 
 
-def _with_ends(brake: Pressed, tied: Any, q: Any) -> tuple[Pressed, Any, int]:
+def _with_ends(brake: Pressed, tied: np.ndarray, q: np.ndarray) -> tuple[Pressed, Any, int]:
     """The brake with the ends c of its springs as freedoms after the others, each under the force it has at q.
 
     tied (n, linings): the springs' stiffness times R. Nothing to do where no spring is stretched by R.
@@ -169,6 +175,6 @@ def _with_ends(brake: Pressed, tied: Any, q: Any) -> tuple[Pressed, Any, int]:
     )
 
 
-def _wider(rows: Any, more: int) -> Any:
+def _wider(rows: "sparray", more: int) -> Any:
     """Rows that do not feel `more` freedoms after the others."""
     return sparse.csr_array((rows.data, rows.indices, rows.indptr), shape=(rows.shape[0], rows.shape[1] + more))

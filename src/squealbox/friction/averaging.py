@@ -5,6 +5,7 @@ import re
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.averages import WIDTHS, in_text, mean_over_phase, summed
 from squealbox.friction.curves import Coulomb, Cubic, Hyperbolic, LinearSlope, Stribeck, Table
@@ -43,12 +44,12 @@ class Averaged(FrictionLaw):
         more = self._polynomial() or (*in_text(self._edges()), *self.law.coefficients())
         return (np.full(lead, NEVER_STICKS)[()], self.velocity, *more)
 
-    def mu(self, velocity: Any) -> Any:
+    def mu(self, velocity: float | np.ndarray) -> Any:
         base = self.law.mu(0.0)
         v, w, _ = np.broadcast_arrays(np.abs(velocity), self.velocity, base)
         return base * 2.0 / np.pi * np.arcsin(np.minimum(v / w, 1.0)) + self._rest(v, w, base, slope=False)
 
-    def slope_at(self, velocity: Any) -> Any:
+    def slope_at(self, velocity: float | np.ndarray) -> Any:
         base = self.law.mu(0.0)
         v, w, _ = np.broadcast_arrays(np.abs(velocity), self.velocity, base)
         with np.errstate(divide="ignore"):
@@ -93,7 +94,7 @@ class Averaged(FrictionLaw):
             return law.static, -fall + 1.5 * third * w * w, third
         return None
 
-    def _rest(self, v: Any, w: Any, base: Any, slope: bool) -> Any:
+    def _rest(self, v: np.ndarray, w: np.ndarray, base: float | np.ndarray, slope: bool) -> Any:
         """E[h(v + w sin)], or its derivative by v, E[h']."""
         cubic_part = self._polynomial()
         if cubic_part is not None:
@@ -124,7 +125,7 @@ _AVERAGED_SLOPE = """def slope(v, p):
 """
 
 
-def _slow_dither(law: Any, v: Any, w: Any, slope: bool) -> Any:
+def _slow_dither(law: Stribeck | Hyperbolic, v: np.ndarray, w: np.ndarray, slope: bool) -> Any:
     """E[h] or E[h'] where the sliding never reverses, w <= v."""
     if isinstance(law, Stribeck):
         from scipy.special import ive
@@ -136,15 +137,15 @@ def _slow_dither(law: Any, v: Any, w: Any, slope: bool) -> Any:
     return -law.static * law.delta * one / root**3 if slope else law.static * (1.0 / root - 1.0)
 
 
-def _mean_over_phase(law: FrictionLaw, v: Any, w: Any, base: Any, slope: bool) -> Any:
-    def at(u: Any) -> Any:
+def _mean_over_phase(law: FrictionLaw, v: np.ndarray, w: np.ndarray, base: ArrayLike, slope: bool) -> Any:
+    def at(u: np.ndarray) -> Any:
         values = _spread(law, np.abs(u), slope)
         return values if slope else (values - np.asarray(base)[..., None, None]) * np.sign(u)
 
     return mean_over_phase(at, v, w, _kinks(law))
 
 
-def _spread(law: FrictionLaw, u: Any, slope: bool) -> Any:
+def _spread(law: FrictionLaw, u: np.ndarray, slope: bool) -> Any:
     """mu or its slope at speeds (..., pieces, nodes), the coefficients' leading axes in front."""
     if not hasattr(type(law), "formula"):
         return law.slope_at(u) if slope else law.mu(u)

@@ -8,7 +8,7 @@ from squealbox.law import NEVER_STICKS, FrictionLaw
 from squealbox.parameters import ParameterError, parameter
 
 
-def _limit(static: Any, beyond: Any) -> Any:
+def _limit(static: float | np.ndarray, beyond: float | np.ndarray) -> Any:
     """The static limit; of a law that rises from 0 the one that is not mistaken for no friction at all."""
     if isinstance(static, float) and isinstance(beyond, float):  # a tenth of the time, where laws are asked most
         return NEVER_STICKS if static == 0.0 < beyond else static
@@ -41,7 +41,7 @@ class Coulomb(FrictionLaw):
     slope_formula = staticmethod(coulomb_slope)
 
     @classmethod
-    def guess(cls, speeds: Any, values: Any) -> dict[str, float]:
+    def guess(cls, speeds: np.ndarray, values: np.ndarray) -> dict[str, float]:
         return {"static": float(np.mean(values))}
 
     def coefficients(self) -> tuple[Any, ...]:
@@ -167,7 +167,7 @@ class Cubic(FrictionLaw):
     slope_formula = staticmethod(cubic_slope)
 
     @classmethod
-    def guess(cls, speeds: Any, values: Any) -> dict[str, float]:
+    def guess(cls, speeds: np.ndarray, values: np.ndarray) -> dict[str, float]:
         return {**super().guess(speeds, values), "speed": float(np.max(speeds))}
 
     def coefficients(self) -> tuple[Any, ...]:

@@ -16,7 +16,7 @@ import hashlib
 import inspect
 import re
 import textwrap
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from functools import cache
 from pathlib import Path
 from typing import Any, ClassVar
@@ -66,10 +66,10 @@ class OwnLaw(FrictionLaw):
         rising = np.where(np.asarray(self.static) == 0.0, NEVER_STICKS, self.static)
         return (rising if np.ndim(rising) else float(rising), *self.numbers)
 
-    def mu(self, velocity: Any) -> Any:
+    def mu(self, velocity: float | np.ndarray) -> Any:
         return _functions(self.source)[0](np.abs(velocity), self.coefficients())
 
-    def slope_at(self, velocity: Any) -> Any:
+    def slope_at(self, velocity: float | np.ndarray) -> Any:
         return _functions(self.source)[1](np.abs(velocity), self.coefficients())
 
     @property
@@ -186,7 +186,7 @@ def _is_preface(node: ast.stmt) -> bool:
     return isinstance(node, ast.Import) and [(a.name, a.asname) for a in node.names] == [("numpy", "np")]
 
 
-def _numbers(values: Any) -> tuple[float, ...]:
+def _numbers(values: Iterable[Any]) -> tuple[float, ...]:
     try:
         numbers = tuple(float(value) for value in values)
     except (TypeError, ValueError) as error:

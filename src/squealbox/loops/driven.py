@@ -30,16 +30,16 @@ class Driven:
         """Limits (a,) [N] of the commands, inf without."""
         return np.array([np.inf if loop.limit is None else float(loop.limit) for loop in self.loops])
 
-    def wanted(self, q: Any, qd: Any) -> Any:
+    def wanted(self, q: np.ndarray, qd: np.ndarray) -> Any:
         """Commands (..., a) at states (..., n), not cut."""
         return q @ self.P.T + qd @ self.R.T
 
-    def commands(self, q: Any, qd: Any) -> Any:
+    def commands(self, q: np.ndarray, qd: np.ndarray) -> Any:
         """Commands (..., a) at states (..., n), cut at their limits."""
         limits = self.limits
         return np.clip(self.wanted(q, qd), -limits, limits)
 
-    def forces(self, q: Any, u: Any) -> Any:
+    def forces(self, q: np.ndarray, u: np.ndarray) -> Any:
         """Forces (..., a) [N] of the actuators."""
         ideal = ~np.any(self.force, axis=-1)
         return np.where(ideal, u, q @ self.force.T)

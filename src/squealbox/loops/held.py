@@ -24,7 +24,7 @@ def highest_rate(system: Any) -> float:
     return float(np.sqrt(np.max(np.abs(squares), initial=0.0)))
 
 
-def first_order(mass: Any, damping: Any, stiffness: Any) -> tuple[Any, Any, Any, Any]:
+def first_order(mass: np.ndarray, damping: np.ndarray, stiffness: np.ndarray) -> tuple[Any, Any, Any, Any]:
     """A, the rows that read q and q' from x = (q, q_m'), and what a force (n,) does to x'."""
     n = len(mass)
     light = ~np.any(mass != 0.0, axis=-1)
@@ -43,7 +43,7 @@ def first_order(mass: Any, damping: Any, stiffness: Any) -> tuple[Any, Any, Any,
     return np.vstack([velocity, acceleration]), displacement, velocity, np.vstack([into_v, force])
 
 
-def step_matrix(A: Any, B: Any, H: Any, delays: Any, step: float) -> Any:
+def step_matrix(A: np.ndarray, B: np.ndarray, H: np.ndarray, delays: np.ndarray, step: float) -> Any:
     """One step of x and the forces still under way, of x' = A x + B u with u = H x late by delays (a,)."""
     d = len(A)
     behind = [max(int(np.floor(delays[a] / step + 1e-9)), 0) for a in range(len(delays))]  # whole samples
@@ -76,7 +76,7 @@ def step_matrix(A: Any, B: Any, H: Any, delays: Any, step: float) -> Any:
     return matrix
 
 
-def continued(matrix: Any, step: float) -> tuple[Any, Any]:
+def continued(matrix: np.ndarray, step: float) -> tuple[Any, Any]:
     """C and K of rows of first order whose eigenvalues are ln(z)/h, the states of the step in front.
 
     A negative multiplier is a pair at half the rate, +- i pi/h, on the rows behind.
@@ -95,7 +95,7 @@ def continued(matrix: Any, step: float) -> tuple[Any, Any]:
     return C, -np.block([[F - (one - P), -turn * Q], [turn * Q, G - (one - Q)]])
 
 
-def _flow(A: Any, B: Any, time: float) -> tuple[Any, Any]:
+def _flow(A: np.ndarray, B: np.ndarray, time: float) -> tuple[Any, Any]:
     """exp(A t) and int_0^t exp(A s) ds B."""
     from scipy.linalg import expm
 

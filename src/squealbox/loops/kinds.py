@@ -8,6 +8,7 @@ A loop senses the degree of freedom `sense` and acts on `on` (a name each). Acti
 Burdess 1981, Mechanism and Machine Theory 16, 535-542.
 """
 
+from collections.abc import Sequence
 from typing import Any, ClassVar
 
 import numpy as np
@@ -154,7 +155,13 @@ class ActiveForce(Loop):
     time_constant: float = parameter("s", 0.0, default=1e-4, meaning="of the filter of the estimate")
     outer: Loop | None = None
 
-    def __init__(self, mass: Any = 0.0, time_constant: Any = 1e-4, outer: Loop | None = None, **others: Any) -> None:
+    def __init__(
+        self,
+        mass: float | np.ndarray = 0.0,
+        time_constant: float | np.ndarray = 1e-4,
+        outer: Loop | None = None,
+        **others: Any,
+    ) -> None:
         known = {"on", "sense", "bandwidth", "limit", "delay", "sampling", "computing"}
         for name in others:
             if name not in known:
@@ -204,7 +211,7 @@ LOOPS: dict[str, type[Loop]] = {
 }
 
 
-def check_loops(loops: Any, names: tuple[str, ...], error: type[Exception]) -> tuple[Loop, ...]:
+def check_loops(loops: Sequence[Any], names: tuple[str, ...], error: type[Exception]) -> tuple[Loop, ...]:
     """The loops of a system as a tuple; `error` for what is none, a loop's own error for a name that is not there."""
     kept = tuple(loops) if isinstance(loops, (tuple, list)) else (loops,)
     for i, loop in enumerate(kept):

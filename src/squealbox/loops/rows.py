@@ -4,10 +4,12 @@ A state z becomes a degree of freedom without mass, which every analysis takes. 
 what is under way, at Chebyshev points of it (Breda, Maset and Vermiglio 2005, SIAM J. Sci. Comput. 27, 482-495).
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.parameters import ParameterError
 
@@ -65,7 +67,7 @@ def lagging(own: Rows, rate: Any) -> Rows:
     return Rows(A, E, F, G, np.zeros(n), np.zeros(n), S, own.b)
 
 
-def delayed(own: Rows, delay: Any, rate: Any, lag: Any = None) -> tuple[Rows, Any]:
+def delayed(own: Rows, delay: float | np.ndarray, rate: float | np.ndarray, lag: Any = None) -> tuple[Rows, Any]:
     """What a loop and its delay remember while the command u comes from outside, and the row (..., m) of its force.
 
     The command is P q + R q' + S z; under way, w' = (2/T)(D w + D_0 u) at Chebyshev points, then an actuator that lags.
@@ -94,7 +96,7 @@ def delayed(own: Rows, delay: Any, rate: Any, lag: Any = None) -> tuple[Rows, An
     return Rows(A, E, F, G, own.P, own.R, S, own.b, size), force
 
 
-def late(own: Rows, delay: Any, rate: Any) -> Rows:
+def late(own: Rows, delay: np.ndarray, rate: np.float64 | np.ndarray) -> Rows:
     """Rows whose force is late: those of `delayed` with the command of the rows themselves."""
     row, force = delayed(own, delay, rate)
     A = row.A + row.G[..., :, None] * row.S[..., None, :]
@@ -168,7 +170,7 @@ def size_and_rate(system: Any, lead: tuple[int, ...]) -> tuple[Any, Any]:
     return spring, np.sqrt(spring / np.where(mass > 0.0, mass, 1.0))
 
 
-def force_per_state(row: Rows, rate: Any) -> Any:
+def force_per_state(row: Rows, rate: ArrayLike) -> Any:
     """How much force a unit of each state makes within 1/rate, (..., m): directly or through others; 1 if none."""
     if row.size is not None:
         return row.size + 0.0 * np.asarray(rate)[..., None]
@@ -195,7 +197,7 @@ def near_sliding(system: Any, held: bool = False) -> Any:
     return near
 
 
-def _wider(system: Any, M: Any, C: Any, K: Any, more: int) -> Any:
+def _wider(system: Any, M: np.ndarray, C: np.ndarray, K: np.ndarray, more: int) -> Any:
     """The system with these matrices and its contacts and load padded by rows without force."""
     names = numbered(system.names, "loop state", more)
     load, contacts = padded_load(system.load, more), padded_contacts(system.contacts, more)
@@ -212,12 +214,12 @@ def numbered(names: tuple[str, ...], name: str, more: int) -> tuple[str, ...]:
     return (*names, *(f"{name} {i}" for i in range(first, first + more)))
 
 
-def padded(row: Any, more: int) -> Any:
+def padded(row: np.ndarray, more: int) -> Any:
     """A row (..., n) with zeros at its end."""
     return np.pad(row, [(0, 0)] * (np.ndim(row) - 1) + [(0, more)])
 
 
-def padded_contacts(contacts: Any, more: int) -> tuple[Any, ...]:
+def padded_contacts(contacts: Sequence[Any], more: int) -> tuple[Any, ...]:
     """Contacts that neither sense nor act along `more` further rows."""
     out = []
     for contact in contacts:
@@ -226,7 +228,7 @@ def padded_contacts(contacts: Any, more: int) -> tuple[Any, ...]:
     return tuple(out)
 
 
-def padded_load(load: Any, more: int) -> Any:
+def padded_load(load: np.ndarray, more: int) -> Any:
     """A load, numbers (..., n) or a schedule of them, with zeros at its end."""
     if not hasattr(load, "terms"):
         return padded(load, more)

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.figure_data import (
     FigureAxis,
@@ -28,7 +29,7 @@ MOST = 6000  # points of a line that are worth their bytes
 
 def modes_over_parameter(
     axis: FigureAxis,
-    x: Any,
+    x: ArrayLike,
     modes: Any,
     unstable: Sequence[tuple[float, float]],
     present: float | None = None,
@@ -74,7 +75,12 @@ def modes_over_parameter(
 
 
 def map_over_two(
-    x: FigureAxis, y: FigureAxis, growth: Any, frequency: Any, curves: Sequence[Any], here: tuple[float, float]
+    x: FigureAxis,
+    y: FigureAxis,
+    growth: ArrayLike,
+    frequency: ArrayLike,
+    curves: Sequence[Any],
+    here: tuple[float, float],
 ) -> FigureData:
     """Growth rate [1/s] over two axes, (ny, nx), read out with its frequency [Hz]; the boundary and the design.
 
@@ -87,7 +93,11 @@ def map_over_two(
 
 
 def motion_and_spectrum(
-    t: Any, columns: Mapping[str, Any], spectra: Mapping[str, tuple[Any, Any]], upto: float, unit: str = "m"
+    t: Any,
+    columns: Mapping[str, Any],
+    spectra: Mapping[str, tuple[Any, Any]],
+    upto: float,
+    unit: str = "m",
 ) -> list[FigureData]:
     """Displacements [unit] over time t (k,) [s]; their spectra (frequency [Hz], amplitude) up to `upto` [Hz]."""
     stride = max(1, int(np.ceil(len(t) / MOST)))

@@ -11,6 +11,7 @@ from squealbox.plots.style import drawing, figure_of
 from squealbox.words import number, quantity_label, scaled, unit_at
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 # Fill, hatch and line of the attractors beside steady sliding, which stays white; readable in grey.
@@ -28,7 +29,7 @@ SHORT = {"irregular": "irregular motion"}
 
 @drawn_by.register(Basin)
 def basin_picture(
-    basin: Basin, *, push: DangerousPush | None = None, title: str = "", axes: Any = None
+    basin: Basin, *, push: DangerousPush | None = None, title: str = "", axes: "Axes | None" = None
 ) -> "Figure":  # fmt: skip
     """Starts of a plane by what they lead to, with steady sliding and the cycles drawn in; without a plane, the shares.
 
@@ -89,7 +90,7 @@ def _reach(basin: Basin, axis: _axis) -> tuple[float, float]:
     return (low, high) if within else axis.ends
 
 
-def _seen(states: Any, x: _axis, y: _axis) -> tuple[Any, Any]:
+def _seen(states: np.ndarray, x: _axis, y: _axis) -> tuple[Any, Any]:
     """States (..., 2n) in the plane."""
     return states[..., x.place] / x.factor, states[..., y.place] / y.factor
 
@@ -106,7 +107,7 @@ def _others(basin: Basin) -> list[int]:
     return [i for i, kind in enumerate(basin.kind) if kind != SLIDING and i not in shown]
 
 
-def _ground(panel: Any, basin: Basin, x: _axis, y: _axis) -> None:
+def _ground(panel: "Axes", basin: Basin, x: _axis, y: _axis) -> None:
     side = round(np.sqrt(len(basin.attractor)))
     label = basin.attractor.reshape(side, side)
     across, up = (np.linspace(*axis.ends, side) for axis in (x, y))
@@ -119,7 +120,7 @@ def _ground(panel: Any, basin: Basin, x: _axis, y: _axis) -> None:
         panel.contour(across, up, here, levels=[0.5], colors=["#555555"], linewidths=0.4, zorder=2)
 
 
-def _cycles(panel: Any, basin: Basin, x: _axis, y: _axis) -> None:
+def _cycles(panel: "Axes", basin: Basin, x: _axis, y: _axis) -> None:
     for k, i in enumerate(_moving(basin)):
         cycle = basin.attractors[i].cycle if basin.attractors else None
         if cycle is None or not cycle.outcome.ok:
@@ -181,7 +182,7 @@ def _through(basin: Basin) -> str:
     return "plane at " + ", ".join(words)
 
 
-def _shares(basin: Basin, title: str, axes: Any) -> "Figure":
+def _shares(basin: Basin, title: str, axes: "Axes | None") -> "Figure":
     """A bar for each attractor, with its interval."""
     with drawing(axes, width=5.0, height=0.9 + 0.35 * max(len(basin.kind), 1)) as panel:
         shares, (low, high) = 100.0 * basin.shares, 100.0 * basin.intervals.T

@@ -11,6 +11,7 @@ from squealbox.plots.style import COLUMN, drawing, figure_of
 from squealbox.shapes import DrawnShape, drawing_of
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 INK = {"motion": "#0072B2", "load": "#D55E00", "part": "#7a8a99"}  # of a role; the others are black
@@ -24,7 +25,7 @@ ARROW = {"arrowstyle": "-|>", "shrinkA": 0.0, "shrinkB": 0.0, "mutation_scale": 
 
 
 @drawn_by.register(Design)
-def brake_drawing(design: Design, *, axes: Any = None) -> "Figure":
+def brake_drawing(design: Design, *, axes: "Axes | None" = None) -> "Figure":
     """The brake as its parameters describe it; angles are to scale, lengths where the design has any.
 
     Blue is what slides and where it moves, orange are loads. Raises `TypeError` for a design that does not `draw`
@@ -54,19 +55,19 @@ def has_drawing(design: Design) -> bool:
     return draws(type(design)) and not any(np.ndim(x) for _, about, x in design.leaves() if about.unit != "-")
 
 
-def _line(panel: Any, shape: DrawnShape, ink: str) -> None:
+def _line(panel: "Axes", shape: DrawnShape, ink: str) -> None:
     dashes = shape.about["dashes"]
     look = {"linewidth": shape.about["width"], "linestyle": (0, dashes) if dashes else "-"}
     panel.plot(*shape.points.T, color=ink, solid_capstyle="round", **look)
 
 
-def _polygon(panel: Any, shape: DrawnShape, ink: str) -> None:
+def _polygon(panel: "Axes", shape: DrawnShape, ink: str) -> None:
     from matplotlib.patches import Polygon
 
     panel.add_patch(Polygon(shape.points, **_filled(shape, ink)))
 
 
-def _circle(panel: Any, shape: DrawnShape, ink: str) -> None:
+def _circle(panel: "Axes", shape: DrawnShape, ink: str) -> None:
     from matplotlib.patches import Circle
 
     panel.add_patch(Circle(shape.points[0], shape.about["radius"], **_filled(shape, ink)))
@@ -77,7 +78,7 @@ def _filled(shape: DrawnShape, ink: str) -> dict[str, Any]:
     return {"facecolor": "white", "edgecolor": ink, "linewidth": 1.0, **order, **FILLED.get(shape.role, {})}
 
 
-def _arrow(panel: Any, shape: DrawnShape, ink: str) -> None:
+def _arrow(panel: "Axes", shape: DrawnShape, ink: str) -> None:
     start, end = shape.points
     panel.annotate("", xy=end, xytext=start, arrowprops={**ARROW, "color": ink})
     panel.update_datalim(shape.points)

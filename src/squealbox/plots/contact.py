@@ -1,6 +1,7 @@
 """Figure of a comparison of contact schemes: the motions over each other, and error against cost."""
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -10,11 +11,14 @@ from squealbox.transient import ContactComparison
 from squealbox.words import quantity_label, scaled, unit_at
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 
 @drawn_by.register(ContactComparison)
-def contact_comparison(comparison: ContactComparison, *, periods: float = 3.0, axes: Any = None) -> "Figure":
+def contact_comparison(
+    comparison: ContactComparison, *, periods: float = 3.0, axes: "Sequence[Axes] | None" = None
+) -> "Figure":
     """The last `periods` [-] of every scheme, and the error of each against its number of evaluations.
 
     `axes` may give the two panels to draw in. A run read from a file has lost its motions: only the second panel is
@@ -28,7 +32,7 @@ def contact_comparison(comparison: ContactComparison, *, periods: float = 3.0, a
     return figure_of(first)
 
 
-def _motions(panel: Any, comparison: ContactComparison, periods: float) -> None:
+def _motions(panel: "Axes", comparison: ContactComparison, periods: float) -> None:
     dof = comparison.settings["dof"]
     runs = [(i, name, comparison.runs[name]) for i, name in enumerate(comparison.schemes) if name in comparison.runs]
     if not runs:
@@ -47,7 +51,7 @@ def _motions(panel: Any, comparison: ContactComparison, periods: float) -> None:
     panel.legend(loc="best")
 
 
-def _costs(panel: Any, comparison: ContactComparison) -> None:
+def _costs(panel: "Axes", comparison: ContactComparison) -> None:
     for i, name in enumerate(comparison.schemes[1:], start=1):
         if np.isfinite(comparison.error[i]):
             look = {**line(i, marker=True), "linestyle": "none", "markevery": 1}

@@ -24,6 +24,7 @@ from squealbox.plots.style import LOOK, WIDTH, cautioned, drawing, figure_of, li
 from squealbox.words import number, quantity_label, scaled, unit_at
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 APART = 10.0  # times as large: branches that differ by more do not share a linear axis
@@ -99,7 +100,7 @@ def branch_diagram(
     name: str | None = None,
     scale: float = 1.0,
     title: str = "",
-    axes: Any = None,
+    axes: "Axes | None" = None,
 ) -> "Figure":
     """Amplitude over the parameter: stable parts solid, unstable ones dashed, special points marked.
 
@@ -169,7 +170,7 @@ def _parameter(one: Branch) -> str:
     return quantity_label(one.parameter, followed.unit_of(one.parameter))
 
 
-def _wide_enough(panel: Any) -> None:
+def _wide_enough(panel: "Axes") -> None:
     """A branch that goes straight up is drawn so: its parameter is no better known than to `NARROWEST` of itself."""
     left, right = panel.get_xlim()
     middle, half = 0.5 * (left + right), NARROWEST * max(abs(left), abs(right))
@@ -195,7 +196,7 @@ def _known(several: Sequence[Branch]) -> tuple[EstimateCurve, ...]:
     return estimate_curves(together[0].family, together[0].parameter, bounds, together)
 
 
-def _estimates(panel: Any, curves: Sequence[EstimateCurve], dof: int, factor: float, scale: float) -> None:
+def _estimates(panel: "Axes", curves: Sequence[EstimateCurve], dof: int, factor: float, scale: float) -> None:
     """Each kind in a look of its own; the legend says how far it is off the cycles."""
     for label in dict.fromkeys(curve.label for curve in curves):
         alike = [curve for curve in curves if curve.label == label]
@@ -209,7 +210,7 @@ def _estimates(panel: Any, curves: Sequence[EstimateCurve], dof: int, factor: fl
                        label=None if i else text, zorder=1)  # fmt: skip
 
 
-def _legend(panel: Any, alone: bool) -> None:
+def _legend(panel: "Axes", alone: bool) -> None:
     """Within the panel; of a figure of ours a long one beside it, or above it where a width was asked for."""
     handles, texts = panel.get_legend_handles_labels()
     if alone and len(texts) > BESIDE:
@@ -227,7 +228,9 @@ def _legend(panel: Any, alone: bool) -> None:
         panel.legend(loc="best")
 
 
-def _parts(panel: Any, one: Branch, size: Any, scale: float, colour: str, label: str, shown: set[str]) -> None:
+def _parts(
+    panel: "Axes", one: Branch, size: np.ndarray, scale: float, colour: str, label: str, shown: set[str]
+) -> None:
     stable = one.stable
     for wanted, dash in ((True, "-"), (False, "--")):
         here = stable == wanted
@@ -241,14 +244,14 @@ def _parts(panel: Any, one: Branch, size: Any, scale: float, colour: str, label:
                        linestyle=dash, label=None if told else text)  # fmt: skip
 
 
-def _rise(panel: Any, one: Branch, size: float, born: float, scale: float, colour: str) -> None:
+def _rise(panel: "Axes", one: Branch, size: float, born: float, scale: float, colour: str) -> None:
     """From where a branch is born to its first point."""
     share = np.linspace(0.0, 1.0, 33)
     at = born + (float(one.value[0]) - born) * share**2
     panel.plot(at / scale, size * share, color=colour, linestyle="-" if one.stable[0] else "--", linewidth=0.7)
 
 
-def _marks(panel: Any, one: Branch, size: Any, scale: float, shown: set[str]) -> None:
+def _marks(panel: "Axes", one: Branch, size: np.ndarray, scale: float, shown: set[str]) -> None:
     for kind, value, at in zip(one.special_kind, one.special_value, one.special_point, strict=True):
         shape, text = MARKS[str(kind)]
         label = None if text in shown else text

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.limit_cycles import BifurcationDiagram, Branch, Coexistence
 from squealbox.plots.dispatch import drawn_by
@@ -11,7 +12,10 @@ from squealbox.plots.style import WIDTH, cautioned, drawing, figure_of, note, pa
 from squealbox.words import quantity_label, scaled, unit_at
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+
+    from squealbox.plots.style import Panels
 
 # Mark, colour and words of each sweep; open marks, so that what lies beneath is seen.
 SWEPT = {
@@ -33,7 +37,7 @@ def bifurcation_diagram(
     name: str | None = None,
     scale: float = 1.0,
     title: str = "",
-    axes: Any = None,
+    axes: "Panels | None" = None,
 ) -> "Figure":
     """What sweeps settle to over a parameter, drawn over branches of cycles (stable solid, unstable dashed).
 
@@ -130,7 +134,7 @@ def _height(one: Branch, diagram: BifurcationDiagram, dof: int, show: str) -> An
     return (one.lowest if least else one.highest)[:, dof] - np.interp(one.value, diagram.value, diagram.sliding[:, dof])
 
 
-def _branch(panel: Any, one: Branch, height: Any, scale: float) -> None:
+def _branch(panel: "Axes", one: Branch, height: np.ndarray, scale: float) -> None:
     stable = one.stable
     for wanted, dash in ((True, "-"), (False, "--")):
         here = stable == wanted
@@ -146,11 +150,11 @@ def _branch(panel: Any, one: Branch, height: Any, scale: float) -> None:
 def coexistence_region(
     region: Coexistence,
     *,
-    ends: Any = None,
+    ends: ArrayLike | None = None,
     names: Sequence[str] | None = None,
     scales: Sequence[float] = (1.0, 1.0),
     title: str = "",
-    axes: Any = None,
+    axes: "Axes | None" = None,
 ) -> "Figure":
     """Where sliding is stable and yet vibrations live: between the curve of their end and the Hopf curve.
 
@@ -188,6 +192,6 @@ def coexistence_region(
         return figure_of(panel)
 
 
-def _span(values: Any) -> tuple[float, float]:
+def _span(values: np.ndarray) -> tuple[float, float]:
     half = 0.5 * (values[1] - values[0]) if len(values) > 1 else 0.5
     return float(values[0] - half), float(values[-1] + half)

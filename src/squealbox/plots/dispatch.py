@@ -2,6 +2,7 @@
 
 import importlib
 import inspect
+from collections.abc import Mapping, Sequence
 from functools import cache, singledispatch
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -25,7 +26,7 @@ def drawers() -> None:
 
 
 @singledispatch
-def drawn_by(result: Any, **keywords: Any) -> "Figure":
+def drawn_by(result: object, **keywords: Any) -> "Figure":
     """The figure of a result as its kind is drawn: each drawing module registers its kinds here."""
     known = ", ".join(sorted(kind.__name__ for kind in drawn_by.registry if kind is not object))
     raise TypeError(f"no figure is known for {type(result).__name__}: expected one of {known}")
@@ -33,7 +34,12 @@ def drawn_by(result: Any, **keywords: Any) -> "Figure":
 
 @public(width=INCHES, height=INCHES)
 def plot(
-    result: Any, *, width: float | None = None, height: float | None = None, style: Any = None, **keywords: Any
+    result: object,
+    *,
+    width: float | None = None,
+    height: float | None = None,
+    style: str | Mapping[str, Any] | Sequence[Any] | None = None,
+    **keywords: Any,
 ) -> "Figure":
     """The figure of a result.
 

@@ -1,6 +1,7 @@
 """The figure of the house: matplotlib's own, which a notebook shows by itself."""
 
-from typing import Any
+import os
+from typing import IO, Any
 
 from matplotlib.figure import Figure
 
@@ -19,7 +20,7 @@ class NotebookFigure(Figure):
         super().__init__(*args, **keywords)
         self.look = LOOK.get()
 
-    def savefig(self, fname: Any, *args: Any, **keywords: Any) -> None:
+    def savefig(self, fname: str | os.PathLike[str] | IO[bytes], *args: Any, **keywords: Any) -> None:
         """As matplotlib's, in the look of this figure."""
         dots = keywords.get("dpi")
         with looked(self), laid_out(self, dots if isinstance(dots, (int, float)) else None):

@@ -1,6 +1,6 @@
 """Measured friction coefficients with the laws fitted to them."""
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -10,11 +10,12 @@ from squealbox.plots.style import COLUMN, drawing, figure_of, line
 from squealbox.words import quantity_label
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 
 @drawn_by.register(FrictionFit)
-def friction_fit(fit: FrictionFit, *, title: str = "", axes: Any = None) -> "Figure":
+def friction_fit(fit: FrictionFit, *, title: str = "", axes: "Axes | None" = None) -> "Figure":
     """Points, the fitted curves, and the confidence band of the law with the least AIC."""
     with drawing(axes, width=1.4 * COLUMN, height=3.0) as panel:
         for place, row in enumerate(np.argsort(fit.aic, kind="stable")):

@@ -1,6 +1,7 @@
 """The key numbers of each kind of result, for a card, a table of a report or a line of a page."""
 
 import dataclasses
+from collections.abc import Sequence
 from functools import singledispatch
 from typing import Any
 
@@ -127,6 +128,6 @@ def _of_ensemble(found: Ensemble) -> list[Fact]:
             ("observed", ", ".join(found.observed) or "nothing", "")]  # fmt: skip
 
 
-def read_of(names: Any, dof: int) -> str:
+def read_of(names: Sequence[str], dof: int) -> str:
     """What an axis calls the displacement of a freedom: with its name where there are several."""
     return "displacement" if len(names) < 2 else f"displacement {names[dof]}"

@@ -1,7 +1,7 @@
 """Friction coefficient against sliding speed."""
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,6 +13,8 @@ from squealbox.words import number, quantity_label
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from squealbox.plots.style import Panels
+
 
 @drawn_by.register(FrictionLaw)
 @drawn_by.register(Mapping)
@@ -23,7 +25,7 @@ def friction_curve(
     operating: tuple[float, float] | None = None,
     speed: float | None = None,
     title: str = "",
-    axes: Any = None,
+    axes: "Panels | None" = None,
 ) -> "Figure":
     """mu(v) of one law, or of several given by name, up to a sliding speed [m/s].
 

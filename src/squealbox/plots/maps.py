@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.plots.style import drawing, figure_of
 from squealbox.words import quantity_label, scaled
@@ -14,6 +15,7 @@ PALE = "#f6e6da"
 EDGE: dict[str, Any] = {"colors": ["#000000"], "linewidths": 1.2, "zorder": 3}
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 
@@ -36,7 +38,7 @@ class PlaneLabels:
 def stability_map(
     x: Any,
     y: Any,
-    growth: Any,
+    growth: ArrayLike,
     *,
     curves: Iterable[Any] | None = None,
     title: str = "",
@@ -78,7 +80,7 @@ def stability_map(
         return figure_of(panel)
 
 
-def _checked(name: str, x: Any, y: Any, grid: Any) -> tuple[Any, Any, Any]:
+def _checked(name: str, x: ArrayLike, y: ArrayLike, grid: ArrayLike) -> tuple[Any, Any, Any]:
     """Axes and grid as arrays; `ValueError` unless the grid has one row for each y."""
     x, y, grid = np.asarray(x, dtype=float), np.asarray(y, dtype=float), np.asarray(grid)
     if grid.shape != (np.size(y), np.size(x)):
@@ -86,7 +88,7 @@ def _checked(name: str, x: Any, y: Any, grid: Any) -> tuple[Any, Any, Any]:
     return x, y, grid
 
 
-def _legend(panel: Any, unstable: Any, unknown: Any) -> None:
+def _legend(panel: "Axes", unstable: np.ndarray, unknown: np.ndarray) -> None:
     """What white, hatched and crossed areas mean, in the corner that hides least of them."""
     from matplotlib.patches import Patch
 
@@ -102,10 +104,13 @@ def _legend(panel: Any, unstable: Any, unknown: Any) -> None:
         "upper left": taken[-rows:, :columns],
         "lower right": taken[:rows, -columns:],
     }
-    panel.legend(handles=handles, loc=min(corners, key=lambda place: float(np.mean(corners[place]))), handlelength=2.0)
+    free: Any = min(corners, key=lambda place: float(np.mean(corners[place])))
+    panel.legend(handles=handles, loc=free, handlelength=2.0)
 
 
-def _shade(panel: Any, x: Any, y: Any, level: Any, top: float, bar: tuple[str, str] | None) -> None:
+def _shade(
+    panel: "Axes", x: np.ndarray, y: np.ndarray, level: np.ndarray, top: float, bar: tuple[str, str] | None
+) -> None:
     from matplotlib.ticker import MaxNLocator
 
     rounded = np.asarray(MaxNLocator(7).tick_values(0.0, top))
@@ -120,7 +125,7 @@ def _shade(panel: Any, x: Any, y: Any, level: Any, top: float, bar: tuple[str, s
 def amplitude_map(
     x: Any,
     y: Any,
-    amplitude: Any,
+    amplitude: ArrayLike,
     *,
     unit: str = "m",
     name: str = "amplitude",

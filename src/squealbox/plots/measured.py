@@ -19,6 +19,7 @@ from squealbox.signals import (
 from squealbox.words import number, quantity_label
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 NARROW = 0.45  # inches a row of a short table of bars
@@ -115,7 +116,7 @@ def calibration_figure(found: Calibration, *, title: str = "") -> "Figure":
 
 
 @drawn_by.register(Comparison)
-def model_beside_measurement(found: Comparison, *, title: str = "", axes: Any = None) -> "Figure":
+def model_beside_measurement(found: Comparison, *, title: str = "", axes: "Axes | None" = None) -> "Figure":
     """How far each simulated number lies from the measured one, beside the measured number's own 95 % error.
 
     Of a level in dB, which has no per cent, the difference stands beside its numbers. What one side alone tells is left
@@ -183,7 +184,7 @@ def spectrograms_beside(
 
 
 @drawn_by.register(OperationalModes)
-def ambient_spectrum(found: OperationalModes, *, title: str = "", axes: Any = None) -> "Figure":
+def ambient_spectrum(found: OperationalModes, *, title: str = "", axes: "Axes | None" = None) -> "Figure":
     """The measured spectrum, that of the modes and the noise, and each mode with its damping ratio."""
     with drawing(axes, width=1.5 * COLUMN, height=2.8) as panel:
         panel.semilogy(found.line, found.measured, color="#b0b0b0", linewidth=0.6, label="measured")
@@ -200,7 +201,7 @@ def ambient_spectrum(found: OperationalModes, *, title: str = "", axes: Any = No
 
 
 @drawn_by.register(DampingOnset)
-def damping_line(found: DampingOnset, *, title: str = "", axes: Any = None) -> "Figure":
+def damping_line(found: DampingOnset, *, title: str = "", axes: "Axes | None" = None) -> "Figure":
     """Growth rates with their errors over what was varied, the line through them, and where it meets zero."""
     with drawing(axes, width=1.4 * COLUMN, height=2.6) as panel:
         panel.axhline(0.0, color="black", linewidth=0.6)
@@ -218,7 +219,7 @@ def damping_line(found: DampingOnset, *, title: str = "", axes: Any = None) -> "
 
 
 @drawn_by.register(SoundQuality)
-def specific_loudness(found: SoundQuality, *, title: str = "", axes: Any = None) -> "Figure":
+def specific_loudness(found: SoundQuality, *, title: str = "", axes: "Axes | None" = None) -> "Figure":
     """Loudness in each critical band; the sums stand in the title."""
     with drawing(axes, width=1.4 * COLUMN, height=2.4) as panel:
         panel.fill_between(found.bark, found.specific_loudness, color="#0072B2", linewidth=0.0)

@@ -3,13 +3,16 @@
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.plots.style import LINES, UNSTABLE, drawing, figure_of, line, note
-from squealbox.stability import TrackedModes
+from squealbox.stability import ComplexModes, TrackedModes
 from squealbox.words import number, quantity_label, scaled
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+    from squealbox.plots.style import Panels
 
 
 MOST_NAMED = 4  # modes named in the legend where there are more than looks
@@ -19,14 +22,14 @@ OTHERS: dict[str, Any] = {"color": "#aaaaaa", "linewidth": 0.6, "linestyle": "-"
 
 
 def coalescence(
-    parameter: Any,
-    modes: Any,
+    parameter: ArrayLike,
+    modes: ComplexModes | TrackedModes | ArrayLike,
     *,
     name: str = "friction coefficient",
     unit: str = "",
     frequency_unit: str | None = None,
     title: str = "",
-    axes: Any = None,
+    axes: "Panels | None" = None,
 ) -> "Figure":
     """Frequency (above) and growth rate (below) of each mode against a parameter, unstable stretches hatched.
 
@@ -72,7 +75,7 @@ def coalescence(
         return figure_of(above)
 
 
-def _told(growth: Any) -> Any:
+def _told(growth: np.ndarray) -> Any:
     """Which modes of (k, n) have a look and a name of their own (n,): all of a few, else those nearest to growing.
 
     Of more modes than looks the others are thin and grey.
@@ -83,7 +86,7 @@ def _told(growth: Any) -> Any:
     return told
 
 
-def upper_branches(modes: Any) -> Any:
+def upper_branches(modes: ComplexModes | TrackedModes | ArrayLike) -> Any:
     """The modes with Im >= 0, or their eigenvalues (k, m), each a column that runs on smoothly; NaN where it is not."""
     rows = np.asarray(getattr(modes, "eigenvalues", modes))
     rows = rows if isinstance(modes, TrackedModes) else followed(rows)
@@ -91,7 +94,7 @@ def upper_branches(modes: Any) -> Any:
     return rows[:, np.any(np.isfinite(rows), axis=0)]
 
 
-def followed(eigenvalues: Any) -> Any:
+def followed(eigenvalues: ArrayLike) -> Any:
     """The rows of `eigenvalues` (k, m) reordered so that each column runs on smoothly.
 
     Each row is matched to the straight continuation of the two before it, by the assignment of least total distance.
@@ -108,14 +111,14 @@ def followed(eigenvalues: Any) -> Any:
     return rows
 
 
-def unstable_stretches(values: Any, growth: Any) -> list[tuple[float, float]]:
+def unstable_stretches(values: np.ndarray, growth: np.ndarray) -> list[tuple[float, float]]:
     """Stretches of `values` (k,) where the `growth` (k,) [1/s] is positive, beyond round-off.
 
     They end on straight lines between the points, or half way to a point where nothing is known.
     """
     grows = growth > NONE * np.maximum(1.0, np.abs(growth))
     edges = []
-    for i in np.nonzero(np.diff(np.r_[False, grows, False].astype(int)))[0]:
+    for i in np.nonzero(np.diff(np.r_[False, grows, False].astype(int)))[0].tolist():
         if i in (0, len(values)):
             edges.append(float(values[min(i, len(values) - 1)]))
             continue

@@ -3,18 +3,22 @@
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.matrices import liveliest
 from squealbox.plots.dispatch import drawn_by
 from squealbox.plots.key_numbers import read_of
 from squealbox.plots.spectra import spectrum
 from squealbox.plots.style import drawing, figure_of, line, note, panels, uncertain
-from squealbox.signals import LEAST, SignalError, column, equal_steps, values
+from squealbox.signals import LEAST, MotionLike, SignalError, column, equal_steps, values
 from squealbox.transient import Trajectory, Verdict, resolved, smooth_curve, verdict
 from squealbox.words import number, quantity_label, scaled, unit_at
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+
+    from squealbox.plots.style import Panels
 
 SMOOTH = 20  # points of a drawn curve between two turning points
 LARGEST, STRETCHES = 20_000, 40  # points of a line, beyond which more only blacken it; parts of it that are then drawn
@@ -22,8 +26,8 @@ MANY, LAST = 25.0, 6.0  # periods from which a history is a black block, and tho
 
 
 def time_history(
-    motion: Any,
-    t: Any = None,
+    motion: MotionLike,
+    t: ArrayLike | None = None,
     *,
     dof: Any = 0,
     verdict: Verdict | None = None,
@@ -31,7 +35,7 @@ def time_history(
     unit: str | None = None,
     time_unit: str | None = None,
     title: str = "",
-    axes: Any = None,
+    axes: "Axes | None" = None,
 ) -> "Figure":
     """Displacement against time.
 
@@ -72,14 +76,14 @@ def time_history(
 
 
 def phase_plane(
-    motion: Any,
+    motion: MotionLike,
     *,
     dof: int | str = 0,
     part: float = 0.25,
     unit: str | None = None,
     speed_unit: str | None = None,
     title: str = "",
-    axes: Any = None,
+    axes: "Axes | None" = None,
 ) -> "Figure":
     """Velocity against displacement: the last `part` [-] of the time dark, before it pale, the start as a ring."""
     times, x, velocity = _drawn(motion, dof)
@@ -98,7 +102,7 @@ def phase_plane(
         return figure_of(panel)
 
 
-def _drawn(motion: Any, dof: int | str) -> tuple[Any, Any, Any]:
+def _drawn(motion: MotionLike, dof: int | str) -> tuple[Any, Any, Any]:
     """Times, displacement and velocity as they are drawn: through few steps a smooth curve, not a polygon."""
     times, x = values(motion, dof=dof)
     velocity = np.asarray(motion.qd)[:, column(motion, dof)]
@@ -109,7 +113,7 @@ def _drawn(motion: Any, dof: int | str) -> tuple[Any, Any, Any]:
     return fine, curve.spline(fine), curve.spline(fine, 1)
 
 
-def _extremes(x: Any) -> Any:
+def _extremes(x: np.ndarray) -> Any:
     """Which points of a history are drawn: all, or of too many the least and the largest of each part."""
     width = x.size // (LARGEST // 4)
     if x.size <= LARGEST:
@@ -119,14 +123,16 @@ def _extremes(x: Any) -> Any:
     return np.unique(np.r_[0, first + parts.argmin(axis=1), first + parts.argmax(axis=1), whole : x.size])
 
 
-def _stretches(points: Any) -> list[Any]:
+def _stretches(points: np.ndarray) -> list[Any]:
     """The points of a curve in one piece, or of too many some stretches spread over the whole."""
     if points.size <= LARGEST:
         return [points]
     return [part[: LARGEST // STRETCHES] for part in np.array_split(points, STRETCHES)]
 
 
-def energy(trajectory: Trajectory, *, unit: str | None = None, title: str = "", axes: Any = None) -> "Figure":
+def energy(
+    trajectory: Trajectory, *, unit: str | None = None, title: str = "", axes: "Panels | None" = None
+) -> "Figure":
     """Where the energy went, and by how much the audit fails to close; `axes` is a pair of panels.
 
     Above: work of the friction of each contact, of the load and of the skew stiffness, energy stored and, positive too
@@ -190,7 +196,9 @@ def motion_overview(trajectory: Trajectory, *, dof: int | str | None = None, tit
 
 
 @drawn_by.register(Verdict)
-def amplitude_course(verdict: Verdict, *, unit: str | None = None, title: str = "", axes: Any = None) -> "Figure":
+def amplitude_course(
+    verdict: Verdict, *, unit: str | None = None, title: str = "", axes: "Axes | None" = None
+) -> "Figure":
     """Course of the amplitude behind a verdict, on a logarithmic scale, with its sentence."""
     from matplotlib.ticker import LogLocator, NullFormatter
 
@@ -210,7 +218,7 @@ def amplitude_course(verdict: Verdict, *, unit: str | None = None, title: str = 
         return figure_of(panel)
 
 
-def _last_periods(motion: Trajectory, begin: float, *, dof: int | str, name: str, axes: Any) -> None:
+def _last_periods(motion: Trajectory, begin: float, *, dof: int | str, name: str, axes: "Axes") -> None:
     """The end of a motion of many periods, close enough to see its shape."""
     times, x, _ = _drawn(motion, dof)
     curve = smooth_curve(motion, dof=dof, begin=begin) if np.sum(motion.t >= begin) >= LEAST else None
@@ -236,7 +244,7 @@ def _verdict_note(verdict: Verdict, unit: str = "m") -> str:
     return text
 
 
-def _dof_name(motion: Any, dof: int | str) -> str:
+def _dof_name(motion: MotionLike, dof: int | str) -> str:
     if isinstance(dof, str):
         return dof
     if isinstance(motion, Trajectory):

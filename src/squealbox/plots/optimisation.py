@@ -1,5 +1,6 @@
 """Figures of optimised designs: the Pareto front, and how far each parameter moved within its bounds."""
 
+from collections.abc import Mapping
 from textwrap import wrap
 from typing import TYPE_CHECKING, Any
 
@@ -11,7 +12,10 @@ from squealbox.studies import Optimum
 from squealbox.words import number, quantity_label
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+
+    from squealbox.plots.style import Panels
 
 WRAPPED = 42  # characters of a line of an axis label
 BEFORE, AFTER = "#888888", "#D55E00"
@@ -19,7 +23,7 @@ HOLE = 0.15  # of the range of a goal: a wider gap in the front is said
 
 
 @drawn_by.register(Optimum)
-def optimum(found: Optimum, *, title: str = "", axes: Any = None) -> "Figure":
+def optimum(found: Optimum, *, title: str = "", axes: "Panels | None" = None) -> "Figure":
     """One goal: each parameter within its bounds, before and after. Two: the Pareto front and its parameters.
 
     With three goals or more the front is drawn as a line for each design over the goals, each scaled by its range.
@@ -38,11 +42,11 @@ def optimum(found: Optimum, *, title: str = "", axes: Any = None) -> "Figure":
         return figure_of(left)
 
 
-def _label(about: Any) -> str:
+def _label(about: Mapping[str, Any]) -> str:
     return quantity_label(f"{about['name']}", about["unit"])
 
 
-def _front(panel: Any, found: Optimum, title: str) -> None:
+def _front(panel: "Axes", found: Optimum, title: str) -> None:
     """Every design of the front over its two goals, with the design before and the compromise."""
     x, y = found.goals.T
     panel.plot(x, y, ".", color="#0072B2", markersize=4, label=f"{len(x)} designs of the front")
@@ -57,7 +61,7 @@ def _front(panel: Any, found: Optimum, title: str) -> None:
     panel.set(xlabel=words[0], ylabel=words[1], title=title)
 
 
-def _along(panel: Any, found: Optimum) -> None:
+def _along(panel: "Axes", found: Optimum) -> None:
     """The varied parameters over the first goal, as places within their bounds."""
     box = np.asarray(found.settings["box"])
     share = (found.values - box[:, 0]) / np.ptp(box, axis=1)
@@ -73,7 +77,7 @@ def _along(panel: Any, found: Optimum) -> None:
     panel.set(xlabel=_label(found.settings["goals"][0]), ylabel="place within the bounds")
 
 
-def _parallel(panel: Any, found: Optimum, title: str) -> None:
+def _parallel(panel: "Axes", found: Optimum, title: str) -> None:
     """A line for each design over the goals, 0 the best and 1 the worst of the front."""
     factor = np.array([1.0 if about["sense"] == "minimise" else -1.0 for about in found.settings["goals"]])
     costs = found.goals * factor
@@ -88,7 +92,7 @@ def _parallel(panel: Any, found: Optimum, title: str) -> None:
     panel.legend(loc="best")
 
 
-def _moves(panel: Any, found: Optimum, title: str) -> None:
+def _moves(panel: "Axes", found: Optimum, title: str) -> None:
     """Each parameter within its bounds, before and after."""
     box = np.asarray(found.settings["box"])
     places = np.arange(len(found.names))

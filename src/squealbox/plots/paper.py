@@ -7,11 +7,14 @@ import json
 import threading
 from collections.abc import Callable, Iterator
 from itertools import zip_longest
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from squealbox.figure_data import Bars, FigureData, whole
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 LARGEST = 4_000_000  # bytes of a figure
 DOTS, PNG_DOTS = 96.0, 300.0  # px of the page, and of a PNG, to an inch
@@ -123,7 +126,7 @@ def _drawn(spec: dict[str, Any], kind: str) -> bytes:
         return plots.drawn(figure, kind, PNG_DOTS)
 
 
-def _axes(panel: Any, spec: dict[str, Any]) -> None:
+def _axes(panel: "Axes", spec: dict[str, Any]) -> None:
     for way in ("x", "y"):
         low, high = (float(end) for end in spec[way]["domain"])
         if not (np.isfinite([low, high]).all() and low != high):
@@ -140,7 +143,8 @@ def _axes(panel: Any, spec: dict[str, Any]) -> None:
     if named:
         place = {"top": "upper", "bottom": "lower"}
         vertical, _, side = str(spec.get("legend", "top right")).partition(" ")
-        panel.legend(named.values(), named.keys(), loc=f"{place.get(vertical, 'upper')} {side or 'right'}")
+        corner: Any = f"{place.get(vertical, 'upper')} {side or 'right'}"
+        panel.legend(list(named.values()), list(named), loc=corner)
 
 
 def _numbers(values: Any) -> Any:
@@ -162,34 +166,44 @@ def _look(layer: dict[str, Any]) -> dict[str, Any]:
     return {"color": colour, "linestyle": {"present": "--", "measured": ":"}.get(look, "-"), "linewidth": width}
 
 
-def _line(panel: Any, layer: dict[str, Any]) -> Any:
+def _line(panel: "Axes", layer: dict[str, Any]) -> Any:
     return panel.plot(_numbers(layer["x"]), _numbers(layer["y"]), **_look(layer))[0]
 
 
-def _points(panel: Any, layer: dict[str, Any]) -> Any:
+def _points(panel: "Axes", layer: dict[str, Any]) -> Any:
     hollow = layer.get("cls") == "begin"
     size = min(float(layer.get("r", 4.5)), 20.0)
-    about = {"markersize": 1.3 * size, "color": "#14181d", "markerfacecolor": "white" if hollow else "#14181d"}
+    about: dict[str, Any] = {
+        "markersize": 1.3 * size,
+        "color": "#14181d",
+        "markerfacecolor": "white" if hollow else "#14181d",
+    }
     return panel.plot(_numbers(layer["x"]), _numbers(layer["y"]), "o", **about)[0]
 
 
-def _hull(panel: Any, layer: dict[str, Any]) -> Any:
+def _hull(panel: "Axes", layer: dict[str, Any]) -> Any:
     low, high = _numbers(layer["low"]), _numbers(layer["high"])
     return panel.fill_between(_numbers(layer["x"]), low, high, color=SERIES[0], alpha=0.75, linewidth=0.4)
 
 
-def _path(panel: Any, layer: dict[str, Any]) -> Any:
+def _path(panel: "Axes", layer: dict[str, Any]) -> Any:
     for ring in layer["rings"]:
         panel.plot(*np.asarray(ring, dtype=float).T, **_look(layer))
 
 
-def _band(panel: Any, layer: dict[str, Any]) -> Any:
+def _band(panel: "Axes", layer: dict[str, Any]) -> Any:
     colour = BANDS.get(str(layer.get("cls")), "#eeeeee")
     return panel.axvspan(float(layer["from"]), float(layer["to"]), color=colour, zorder=0, linewidth=0)
 
 
-def _text(panel: Any, layer: dict[str, Any]) -> Any:
-    about = {"xytext": (0, 4), "textcoords": "offset points", "ha": "center", "fontsize": 8, "annotation_clip": True}
+def _text(panel: "Axes", layer: dict[str, Any]) -> Any:
+    about: dict[str, Any] = {
+        "xytext": (0, 4),
+        "textcoords": "offset points",
+        "ha": "center",
+        "fontsize": 8,
+        "annotation_clip": True,
+    }
     panel.annotate(str(layer["words"])[:200].replace("$", r"\$"), (float(layer["x"]), float(layer["y"])), **about)
 
 
@@ -205,7 +219,7 @@ DRAW: dict[str, Callable[[Any, dict[str, Any]], Any]] = {
 }
 
 
-def _picture(panel: Any, heat: dict[str, Any]) -> None:
+def _picture(panel: "Axes", heat: dict[str, Any]) -> None:
     """The picture with its colours told: the scales of the page's `colours.js`."""
     from matplotlib.colors import LinearSegmentedColormap, ListedColormap, LogNorm, Normalize, PowerNorm, TwoSlopeNorm
 
@@ -238,7 +252,7 @@ def _picture(panel: Any, heat: dict[str, Any]) -> None:
         bar.set_ticks(range(len(names)), labels=names)
 
 
-def _bars(panel: Any, spec: dict[str, Any]) -> None:
+def _bars(panel: "Axes", spec: dict[str, Any]) -> None:
     names = [str(bar["name"])[:100] for bar in spec["bars"]]
     for i, bar in enumerate(spec["bars"]):
         ends = [0.0, 0.0]

@@ -21,6 +21,7 @@ from squealbox.system import as_system
 from squealbox.words import MINUS, number, quantity_label, scaled
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 DOWN, UP = "#0072B2", "#D55E00"
@@ -29,7 +30,7 @@ SMALL = 20  # degrees of freedom up to which a figure may ask for a hundred spec
 
 @drawn_by.register(CriticalValue)
 @drawn_by.register(CriticalValues)
-def crossings(found: CriticalValue | CriticalValues, *, title: str = "", axes: Any = None) -> "Figure":
+def crossings(found: CriticalValue | CriticalValues, *, title: str = "", axes: "Axes | None" = None) -> "Figure":
     """Largest growth rate over the parameter with each crossing: up where a mode starts to grow, down where it stops.
 
     Without a design to ask for it (a function made the systems, or they are large) the frequency of each stands alone.
@@ -72,7 +73,7 @@ def _growth_around(found: CriticalValue | CriticalValues, values: list[float]) -
 
 
 @drawn_by.register(FiniteSpectrum)
-def finite_eigenvalues(found: FiniteSpectrum, *, title: str = "", axes: Any = None) -> "Figure":
+def finite_eigenvalues(found: FiniteSpectrum, *, title: str = "", axes: "Axes | None" = None) -> "Figure":
     """The finite eigenvalues with Im >= 0 in the complex plane: dots decay, squares grow."""
     values = found.eigenvalues[np.imag(found.eigenvalues) >= 0.0]
     factor, read = scaled("Hz", np.abs(values.imag) / (2.0 * np.pi))
@@ -87,7 +88,7 @@ def finite_eigenvalues(found: FiniteSpectrum, *, title: str = "", axes: Any = No
 
 
 @drawn_by.register(ExceptionalPoints)
-def merging_points(found: ExceptionalPoints, *, title: str = "", axes: Any = None) -> "Figure":
+def merging_points(found: ExceptionalPoints, *, title: str = "", axes: "Axes | None" = None) -> "Figure":
     """Points of two parameters at which two modes merge, each with the frequency there."""
     names = found.parameters or ("", "")
     with drawing(axes, height=2.8) as panel:
@@ -103,7 +104,7 @@ def merging_points(found: ExceptionalPoints, *, title: str = "", axes: Any = Non
 
 
 @drawn_by.register(DampingSplit)
-def damping_split(found: DampingSplit, *, title: str = "", axes: Any = None) -> "Figure":
+def damping_split(found: DampingSplit, *, title: str = "", axes: "Axes | None" = None) -> "Figure":
     """Critical value over how the damping is shared; the best share marked, the undamped value as a line."""
     with drawing(axes, height=2.8) as panel:
         panel.plot(found.share, found.critical, **line(0, marker=True, count=np.size(found.share)), label="damped")
@@ -118,7 +119,7 @@ def damping_split(found: DampingSplit, *, title: str = "", axes: Any = None) -> 
 
 
 @drawn_by.register(PointCurve)
-def point_curve(found: PointCurve, *, title: str = "", axes: Any = None) -> "Figure":
+def point_curve(found: PointCurve, *, title: str = "", axes: "Axes | None" = None) -> "Figure":
     """A curve of special points over two parameters; where Hopf points give birth to unstable cycles it is dotted."""
     names = found.parameters or ("", "")
     subcritical = np.nan_to_num(np.asarray(found.lyapunov, dtype=float)) > 0.0
@@ -137,7 +138,7 @@ def point_curve(found: PointCurve, *, title: str = "", axes: Any = None) -> "Fig
 
 
 @drawn_by.register(HopfPoint)
-def birth_of_a_cycle(found: HopfPoint, *, title: str = "", axes: Any = None) -> "Figure":
+def birth_of_a_cycle(found: HopfPoint, *, title: str = "", axes: "Axes | None" = None) -> "Figure":
     """The square-root law of amplitudes beside a Hopf point, up to where a contact would come to rest.
 
     Solid where the cycle is stable, dashed where it is not.

@@ -1,6 +1,6 @@
 """Figures of many motions at once: an ensemble over its parameters."""
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,6 +16,8 @@ from squealbox.words import quantity_label, scaled
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from squealbox.plots.style import Panels
+
 
 @drawn_by.register(Ensemble)
 def ensemble_overview(
@@ -24,7 +26,7 @@ def ensemble_overview(
     observer: str | None = None,
     dof: int | str | None = None,
     title: str = "",
-    axes: Any = None,
+    axes: "Panels | None" = None,
 ) -> "Figure":
     """What an observer saw over the parameters: a map over two, points over one, else sorted by size.
 

@@ -1,6 +1,6 @@
 """Figures of rare squeal and of surrogates: the way to the design point, levels of a simulation, held-out points."""
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -11,11 +11,14 @@ from squealbox.studies import DesignPoint, SubsetProbability, Surrogate
 from squealbox.words import number, quantity_label
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+
+    from squealbox.plots.style import Panels
 
 
 @drawn_by.register(DesignPoint)
-def design_point(found: DesignPoint, *, title: str = "", axes: Any = None) -> "Figure":
+def design_point(found: DesignPoint, *, title: str = "", axes: "Panels | None" = None) -> "Figure":
     """The quantity on the straight way from the median to the design point and beyond; importance of the parameters.
 
     `axes` is one panel, for the way alone.
@@ -39,7 +42,7 @@ def design_point(found: DesignPoint, *, title: str = "", axes: Any = None) -> "F
         return figure_of(left)
 
 
-def _way(panel: Any, found: DesignPoint, title: str) -> None:
+def _way(panel: "Axes", found: DesignPoint, title: str) -> None:
     about = found.settings["quantity"]
     panel.plot(found.distance, found.values, **line(0))
     panel.axhline(about["limit"], color="#000000", linewidth=0.8, linestyle="--")
@@ -60,7 +63,7 @@ def _way(panel: Any, found: DesignPoint, title: str) -> None:
 
 
 @drawn_by.register(SubsetProbability)
-def subset_probability(found: SubsetProbability, *, title: str = "", axes: Any = None) -> "Figure":
+def subset_probability(found: SubsetProbability, *, title: str = "", axes: "Axes | None" = None) -> "Figure":
     """Probability that the quantity is beyond a value, level by level towards the limit, one line for each run."""
     about = found.settings["quantity"]
     with drawing(axes, width=1.3 * COLUMN, height=2.9) as panel:
@@ -88,7 +91,7 @@ def subset_probability(found: SubsetProbability, *, title: str = "", axes: Any =
 
 
 @drawn_by.register(Surrogate)
-def surrogate(found: Surrogate, *, title: str = "", axes: Any = None) -> "Figure":
+def surrogate(found: Surrogate, *, title: str = "", axes: "Axes | None" = None) -> "Figure":
     """What the surrogate says of points it has not seen, against what was computed; misjudged points stand out."""
     about = found.settings["quantity"]
     with drawing(axes, width=COLUMN, height=3.2) as panel:
@@ -112,5 +115,5 @@ def surrogate(found: Surrogate, *, title: str = "", axes: Any = None) -> "Figure
         return figure_of(panel)
 
 
-def _small(value: Any) -> str:
+def _small(value: float) -> str:
     return f"{float(value):.2e}" if 0.0 < abs(float(value)) < 1e-3 else number(float(value), 3)

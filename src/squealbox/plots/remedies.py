@@ -3,6 +3,7 @@
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.control import ClosedLoop, DefeatingPush, LoopRun, Placement, StableGains
 from squealbox.countermeasures import BestAbsorber, Countermeasure
@@ -14,14 +15,17 @@ from squealbox.system import as_system
 from squealbox.words import quantity_label, scaled
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+
+    from squealbox.plots.style import Panels
 
 MOST_BARS = 24
 ALL = 0.995  # share of a lot that is all of it
 
 
 @drawn_by.register(Countermeasure)
-def countermeasure_drawing(design: Countermeasure, *, axes: Any = None) -> "Figure":
+def countermeasure_drawing(design: Countermeasure, *, axes: "Axes | None" = None) -> "Figure":
     """The drawing of the brake that a countermeasure holds, with what is done to it written above."""
     layers = [type(layer).title.lower() for layer in design.layers]
     figure = brake_drawing(design.innermost, axes=axes)
@@ -31,7 +35,7 @@ def countermeasure_drawing(design: Countermeasure, *, axes: Any = None) -> "Figu
 
 
 @drawn_by.register(Remedies)
-def remedies_figure(found: Remedies, *, title: str = "", axes: Any = None) -> "Figure":
+def remedies_figure(found: Remedies, *, title: str = "", axes: "Axes | None" = None) -> "Figure":
     """The share of the lot that squeals with each cure, ranked, beside that without; hollow where no dose is enough.
 
     Where all of it squeals with any of them, the growth rate tells them apart.
@@ -67,7 +71,7 @@ def remedies_figure(found: Remedies, *, title: str = "", axes: Any = None) -> "F
 
 
 @drawn_by.register(BestAbsorber)
-def detuning_map(found: BestAbsorber, *, title: str = "", axes: Any = None) -> "Figure":
+def detuning_map(found: BestAbsorber, *, title: str = "", axes: "Axes | None" = None) -> "Figure":
     """What was aimed for over tuning and damping of the absorber, with its best point and, of growth, the edge."""
     names = {"decay": ("growth rate", "1/s"), "margin": ("critical value", ""), "probability": ("P(squeal)", "")}
     with drawing(axes, width=1.5 * COLUMN, height=2.8) as panel:
@@ -82,7 +86,7 @@ def detuning_map(found: BestAbsorber, *, title: str = "", axes: Any = None) -> "
 
 
 @drawn_by.register(ClosedLoop)
-def poles_figure(found: ClosedLoop, *, title: str = "", axes: Any = None) -> "Figure":
+def poles_figure(found: ClosedLoop, *, title: str = "", axes: "Axes | None" = None) -> "Figure":
     """Poles with the loops closed (dots) and without their forces (crosses), over growth rate and frequency."""
     with drawing(axes, width=1.4 * COLUMN, height=2.8) as panel:
         for values, mark, label in ((found.open_loop, "x", "open"), (found.poles, "o", "closed")):
@@ -95,7 +99,12 @@ def poles_figure(found: ClosedLoop, *, title: str = "", axes: Any = None) -> "Fi
 
 
 def loop_locus(
-    found: ClosedLoop, gains: Any = None, loop: int | None = None, *, title: str = "", axes: Any = None
+    found: ClosedLoop,
+    gains: ArrayLike | None = None,
+    loop: int | None = None,
+    *,
+    title: str = "",
+    axes: "Panels | None" = None,
 ) -> "Figure":
     """Where the poles go as the gain of one loop, or of all, rises from 0 (crosses) over 1 (circles) to twice that."""
     factors = np.linspace(0.0, 2.0, 401) if gains is None else np.asarray(gains, dtype=float)
@@ -115,7 +124,7 @@ def loop_locus(
         return figure_of(panel)
 
 
-def nyquist_curve(found: ClosedLoop, loop: int = 0, *, title: str = "", axes: Any = None) -> "Figure":
+def nyquist_curve(found: ClosedLoop, loop: int = 0, *, title: str = "", axes: "Axes | None" = None) -> "Figure":
     """The open loop -L of one loop, the others closed, over positive frequencies, and the critical point -1."""
     fastest = float(np.max(np.abs(found.open_loop)))
     slowest = max(float(np.min(np.abs(found.open_loop))), 1e-4 * fastest)
@@ -137,7 +146,7 @@ def nyquist_curve(found: ClosedLoop, loop: int = 0, *, title: str = "", axes: An
 
 
 @drawn_by.register(Placement)
-def placement_figure(found: Placement, *, title: str = "", axes: Any = None) -> "Figure":
+def placement_figure(found: Placement, *, title: str = "", axes: "Axes | None" = None) -> "Figure":
     """What feedback between each pair of freedoms does to the mode that grows most: blue damps it, red drives it."""
     values = found.shift[:, :, found.target].real
     size = float(np.max(np.abs(values))) or 1.0
@@ -152,7 +161,7 @@ def placement_figure(found: Placement, *, title: str = "", axes: Any = None) -> 
 
 
 @drawn_by.register(DefeatingPush)
-def push_figure(found: DefeatingPush, *, title: str = "", axes: Any = None) -> "Figure":
+def push_figure(found: DefeatingPush, *, title: str = "", axes: "Axes | None" = None) -> "Figure":
     """The pushes that die down and those that do not, and the edge between them."""
     with drawing(axes, width=1.4 * COLUMN, height=1.2) as panel:
         edge = found.push if found.outcome.ok else 1.0
@@ -167,7 +176,7 @@ def push_figure(found: DefeatingPush, *, title: str = "", axes: Any = None) -> "
 
 
 @drawn_by.register(StableGains)
-def gains_figure(found: StableGains, *, title: str = "", axes: Any = None) -> "Figure":
+def gains_figure(found: StableGains, *, title: str = "", axes: "Axes | None" = None) -> "Figure":
     """Growth rate over the factor on the loops' forces, and the ranges in which they hold the brake."""
     with drawing(axes, width=1.4 * COLUMN, height=2.0) as panel:
         panel.plot(found.factor, found.growth, color="#0072B2")
@@ -184,7 +193,7 @@ def gains_figure(found: StableGains, *, title: str = "", axes: Any = None) -> "F
 
 
 @drawn_by.register(LoopRun)
-def loop_run(found: LoopRun, *, title: str = "", axes: Any = None) -> "Figure":
+def loop_run(found: LoopRun, *, title: str = "", axes: "Panels | None" = None) -> "Figure":
     """Displacement of each freedom, and below the force of each loop, held until the next instant."""
     names = as_system(found.inputs["system"]).names
     second, clock = scaled("s", found.t)

@@ -3,6 +3,7 @@
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox import signals
 from squealbox.plots.dispatch import drawn_by
@@ -13,12 +14,15 @@ WIDER = 2.4  # so much of the frequency of the highest peak is drawn: its first 
 NAMED = 0.03  # share of the highest peak from which a peak is named
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+
+    from squealbox.signals import Spectrogram
 
 
 def spectrum(
     signal: Any,
-    t: Any = None,
+    t: ArrayLike | None = None,
     *,
     peaks: int = 3,
     upto: float | None = None,
@@ -29,7 +33,7 @@ def spectrum(
     quantity: str = "",
     remark: str = "",
     title: str = "",
-    axes: Any = None,
+    axes: "Axes | None" = None,
     **cut: Any,
 ) -> "Figure":
     """One-sided amplitude spectrum of a signal, or a `Spectrum` already made, with its highest peaks named.
@@ -85,7 +89,7 @@ def _fine(resolution: float, read: str) -> str:
     return f"{number(resolution, 3)} Hz"
 
 
-def _name_peak(panel: Any, x: float, y: float, side: str) -> None:
+def _name_peak(panel: "Axes", x: float, y: float, side: str) -> None:
     panel.plot(x, y, "v", color="#D55E00", markersize=3, zorder=3)
     panel.annotate(
         number(x),
@@ -98,15 +102,15 @@ def _name_peak(panel: Any, x: float, y: float, side: str) -> None:
 
 
 def spectrogram(
-    signal: Any,
-    t: Any = None,
+    signal: "Spectrogram",
+    t: ArrayLike | None = None,
     *,
     upto: float | None = None,
     decades: float = 3.0,
     unit: str | None = None,
     frequency_unit: str | None = None,
     title: str = "",
-    axes: Any = None,
+    axes: "Axes | None" = None,
     **cut: Any,
 ) -> "Figure":
     """Amplitude over time and frequency, dark where it is large, over `decades` [-] below the largest.
@@ -138,7 +142,7 @@ def spectrogram(
 
 
 @drawn_by.register(signals.GrowthRate)
-def component_growth(found: signals.GrowthRate, *, title: str = "", axes: Any = None) -> "Figure":
+def component_growth(found: signals.GrowthRate, *, title: str = "", axes: "Axes | None" = None) -> "Figure":
     """The amplitude of one component piece by piece, on a logarithmic scale, and the rate fitted to it."""
     second, clock = scaled("s", found.time)
     middle = 0.5 * (found.time[0] + found.time[-1])
@@ -159,7 +163,7 @@ def component_growth(found: signals.GrowthRate, *, title: str = "", axes: Any = 
 
 
 @drawn_by.register(signals.SoundLevel)
-def loudness(found: signals.SoundLevel, *, title: str = "", axes: Any = None) -> "Figure":
+def loudness(found: signals.SoundLevel, *, title: str = "", axes: "Axes | None" = None) -> "Figure":
     """Estimated sound pressure level of each line, with the sum in the title and what it rests on below."""
     factor, read = scaled("Hz", found.frequency)
     floor = float(np.min(found.line_level, initial=0.0))

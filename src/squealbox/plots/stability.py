@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.plots.dispatch import drawn_by
 from squealbox.plots.modes import coalescence
@@ -27,6 +28,7 @@ from squealbox.stability import (
 from squealbox.words import number, quantity_label, scaled
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 Scales = Mapping[str, tuple[float, str]] | None
@@ -40,7 +42,7 @@ AREAS = {
 }
 
 
-def root_locus(tracked: TrackedModes, *, title: str = "", axes: Any = None) -> "Figure":
+def root_locus(tracked: TrackedModes, *, title: str = "", axes: "Axes | None" = None) -> "Figure":
     """Eigenvalues with Im >= 0 in the complex plane as the parameter grows; a square marks the start, a dot the end."""
     values = np.where(tracked.eigenvalues.imag >= 0.0, tracked.eigenvalues, np.nan)
     with drawing(axes, height=3.0) as panel:
@@ -61,7 +63,7 @@ def root_locus(tracked: TrackedModes, *, title: str = "", axes: Any = None) -> "
 
 
 @drawn_by.register(ComplexModes)
-def eigenvalues(modes: ComplexModes, *, title: str = "", axes: Any = None) -> "Figure":
+def eigenvalues(modes: ComplexModes, *, title: str = "", axes: "Axes | None" = None) -> "Figure":
     """The spectrum in the complex plane, Im >= 0: dots where a mode decays, squares where it grows, with their numbers.
 
     With leading axes the spectra of all entries stand in one figure, without numbers.
@@ -94,7 +96,12 @@ def tracked_modes(tracked: TrackedModes, **keywords: Any) -> "Figure":
 
 @drawn_by.register(StabilityMap)
 def mechanism_map(
-    found: StabilityMap, *, boundary: Boundary | None = None, scales: Scales = None, title: str = "", axes: Any = None
+    found: StabilityMap,
+    *,
+    boundary: Boundary | None = None,
+    scales: Scales = None,
+    title: str = "",
+    axes: "Axes | None" = None,
 ) -> "Figure":
     """Stable and unstable regions over two parameters, shaded and hatched by mechanism, up to the boundary.
 
@@ -161,7 +168,9 @@ def _nearest_unstable(found: StabilityMap) -> Any:
     return found.mechanism[tuple(nearest)]
 
 
-def _unstable(panel: Any, found: StabilityMap, x: Any, y: Any, boundary: Boundary | None, factors: Any) -> Any:
+def _unstable(
+    panel: "Axes", found: StabilityMap, x: np.ndarray, y: np.ndarray, boundary: Boundary | None, factors: ArrayLike
+) -> Any:
     """The outline of the unstable area: to the traced boundary, else to zero between the points; None without one."""
     from matplotlib.tri import Triangulation
 
@@ -170,7 +179,7 @@ def _unstable(panel: Any, found: StabilityMap, x: Any, y: Any, boundary: Boundar
         return None
     levels = [0.0, 2.0 * float(np.nanmax(growth))]
     if boundary is None:
-        area = panel.contourf(x, y, np.ma.masked_invalid(growth), levels=levels)
+        area: Any = panel.contourf(x, y, np.ma.masked_invalid(growth), levels=levels)
     else:
         ends = np.array([[x[0], x[-1]], [y[0], y[-1]]])
         size = np.array([len(x), len(y)]) / np.ptp(ends, axis=1)  # cells in a unit
@@ -186,7 +195,7 @@ def _unstable(panel: Any, found: StabilityMap, x: Any, y: Any, boundary: Boundar
     return outline
 
 
-def _dense(points: Any, size: Any) -> Any:
+def _dense(points: np.ndarray, size: np.ndarray) -> Any:
     """A curve (k, 2) with a point in every tenth of a cell, so that triangles do not reach across it."""
     steps = np.maximum(np.ceil(10.0 * np.max(np.abs(np.diff(points, axis=0)) * size, axis=1)), 1.0)
     place = np.append(0.0, np.cumsum(steps))
@@ -195,7 +204,9 @@ def _dense(points: Any, size: Any) -> Any:
 
 
 @drawn_by.register(Boundary)
-def boundary_curves(boundary: Boundary, *, scales: Scales = None, title: str = "", axes: Any = None) -> "Figure":
+def boundary_curves(
+    boundary: Boundary, *, scales: Scales = None, title: str = "", axes: "Axes | None" = None
+) -> "Figure":
     """The traced boundary alone: the curves and their points."""
     x_name, y_name = boundary.parameters
     (x_factor, x_unit), (y_factor, y_unit) = (_scale(boundary, name, scales) for name in (x_name, y_name))
@@ -206,7 +217,7 @@ def boundary_curves(boundary: Boundary, *, scales: Scales = None, title: str = "
 
 
 @drawn_by.register(ModeEnergy)
-def mode_energy(energy: ModeEnergy, *, title: str = "", axes: Any = None) -> "Figure":
+def mode_energy(energy: ModeEnergy, *, title: str = "", axes: "Axes | None" = None) -> "Figure":
     """What each contact and damper adds to the growth rate of a mode, as bars; their sum is the growth rate."""
     rows = list(energy.shares)
     if energy.balanced:
@@ -217,14 +228,16 @@ def mode_energy(energy: ModeEnergy, *, title: str = "", axes: Any = None) -> "Fi
 
 
 @drawn_by.register(Sensitivity)
-def sensitivity(found: Sensitivity, *, most: int = 10, title: str = "", axes: Any = None) -> "Figure":
+def sensitivity(found: Sensitivity, *, most: int = 10, title: str = "", axes: "Axes | None" = None) -> "Figure":
     """Change of the growth rate for one per cent more of each parameter, the strongest first."""
     rows = [(name, 0.01 * value) for name, value in found.ranked()[:most]]
     return _bars(rows, "change of growth rate for +1 %", "1/s", title, axes)
 
 
 @drawn_by.register(LocalSensitivity)
-def local_sensitivity(found: LocalSensitivity, *, most: int = 10, title: str = "", axes: Any = None) -> "Figure":
+def local_sensitivity(
+    found: LocalSensitivity, *, most: int = 10, title: str = "", axes: "Axes | None" = None
+) -> "Figure":
     """What a gram at each node does to the growth rate, where the nodes are; without nodes, on each freedom as bars."""
     label = "change of growth rate for +1 g"
     known = np.all(np.isfinite(found.place), axis=1)
@@ -247,7 +260,7 @@ def local_sensitivity(found: LocalSensitivity, *, most: int = 10, title: str = "
 
 
 @drawn_by.register(MeshDoubt)
-def mesh_doubt(found: MeshDoubt, *, title: str = "", axes: Any = None) -> "Figure":
+def mesh_doubt(found: MeshDoubt, *, title: str = "", axes: "Axes | None" = None) -> "Figure":
     """Growth rate over frequency on both meshes; a line joins what is one mode."""
     with drawing(axes, width=4.5, height=3.0) as panel:
         for at in zip(
@@ -268,7 +281,7 @@ def mesh_doubt(found: MeshDoubt, *, title: str = "", axes: Any = None) -> "Figur
 
 
 @drawn_by.register(TransientGrowth)
-def transient_growth(found: TransientGrowth, *, title: str = "", axes: Any = None) -> "Figure":
+def transient_growth(found: TransientGrowth, *, title: str = "", axes: "Axes | None" = None) -> "Figure":
     """Largest amplification possible at each instant, with the decay the eigenvalues promise."""
     with drawing(axes) as panel:
         panel.plot(1e3 * found.instants, found.envelope, **line(0), label="largest possible")
@@ -285,7 +298,7 @@ def transient_growth(found: TransientGrowth, *, title: str = "", axes: Any = Non
         return figure_of(panel)
 
 
-def _bars(rows: list[tuple[str, float]], name: str, unit: str, title: str, axes: Any) -> "Figure":
+def _bars(rows: list[tuple[str, float]], name: str, unit: str, title: str, axes: "Axes | None") -> "Figure":
     with drawing(axes, width=4.5, height=0.4 + 0.24 * len(rows) + 0.3) as panel:
         values = np.array([value for _, value in rows])
         colours = ["#D55E00" if value > 0.0 else "#0072B2" for value in values]
@@ -299,7 +312,7 @@ def _bars(rows: list[tuple[str, float]], name: str, unit: str, title: str, axes:
         return figure_of(panel)
 
 
-def _curves(panel: Any, boundary: Boundary, x_factor: float, y_factor: float, **look: Any) -> None:
+def _curves(panel: "Axes", boundary: Boundary, x_factor: float, y_factor: float, **look: Any) -> None:
     for points in boundary.curves:
         panel.plot(x_factor * points[:, 0], y_factor * points[:, 1], color="#000000", linewidth=1.2, **look)
 

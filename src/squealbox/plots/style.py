@@ -26,6 +26,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    Panels = Axes | np.ndarray | Sequence[Axes]  # one panel, or several
+
 
 WIDTH = 7.0  # inches: the text width of a journal page
 COLUMN = 3.4  # one column of two
@@ -160,7 +162,7 @@ def looked(figure: "Figure") -> Iterator[None]:
 
 
 @contextmanager
-def drawing(axes: Any, rows: int = 1, columns: int = 1, **size: Any) -> Iterator[Any]:
+def drawing(axes: "Panels | None", rows: int = 1, columns: int = 1, **size: Any) -> Iterator[Any]:
     """The axes to draw on, in the house's look: those given, or the panels of a new figure.
 
     One panel comes as itself, several as an array of `rows` x `columns` with its single axes squeezed out.
@@ -201,12 +203,12 @@ def panels(
     return figure, np.reshape(axes, shape) if asked else axes
 
 
-def figure_of(axes: Any) -> "Figure":
+def figure_of(axes: "Panels") -> "Figure":
     """The whole figure that one of the axes belongs to."""
     return np.ravel(np.asarray(axes, dtype=object))[0].get_figure(root=True)
 
 
-def letters(axes: Any) -> None:
+def letters(axes: "Panels") -> None:
     """Name the panels (a), (b), (c) ... in the order given, before their titles."""
     with styled():
         for i, panel in enumerate(np.ravel(np.asarray(axes, dtype=object))):
@@ -223,7 +225,7 @@ def line(index: int, *, marker: bool = False, count: int = 0) -> dict[str, Any]:
     return look
 
 
-def power_of_ten(values: Any, unit: str) -> tuple[float, str]:
+def power_of_ten(values: np.ndarray, unit: str) -> tuple[float, str]:
     """A power of ten to divide by, and the unit then read, where the values are far from one."""
     power = int(np.floor(np.log10(max(float(np.max(np.abs(values))), 1e-300))))
     if -3 <= power <= 3:

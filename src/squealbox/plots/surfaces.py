@@ -6,6 +6,7 @@ The farthest faces are drawn first, and those turned away not at all; the outlin
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.plots.style import WIDTH, drawing, figure_of
 from squealbox.shapes import Surface
@@ -14,6 +15,8 @@ from squealbox.words import quantity_label
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from squealbox.fe import Preload
+
 REACH = 0.09  # of its size: the largest movement, as in the workbench
 VIEWS = {"": (0.6, 0.85), "along the axis": (0.0, 0.0)}  # rad: turned about the axis, and tilted
 COLOURS = "cividis"
@@ -21,7 +24,7 @@ EDGE = 0.5  # rad by which faces are turned to each other at an edge of the outl
 FLAT = 0.05  # of their width: how far contact points lie out of a plane
 
 
-def mode_on_surface(surface: Surface, moved: Any, *, title: str = "") -> "Figure":
+def mode_on_surface(surface: Surface, moved: np.ndarray, *, title: str = "") -> "Figure":
     """A mode at the instant of its largest motion, seen from two sides.
 
     Parameters
@@ -61,7 +64,7 @@ def mode_on_surface(surface: Surface, moved: Any, *, title: str = "") -> "Figure
         return whole
 
 
-def from_side(places: Any, turn: float, tilt: float) -> Any:
+def from_side(places: ArrayLike, turn: float, tilt: float) -> Any:
     """Places (k, 3) as to the right, up and towards the reader, turned about z and tilted [rad]."""
     x, y, z = np.asarray(places).T
     back = np.sin(turn) * x + np.cos(turn) * y
@@ -88,7 +91,7 @@ def outline(surface: Surface) -> Any:
     return np.unique(pairs[sharp[which.ravel()]], axis=0)
 
 
-def contact_pressure(preload: Any, names: tuple[str, ...], *, title: str = "") -> "Figure":
+def contact_pressure(preload: "Preload", names: tuple[str, ...], *, title: str = "") -> "Figure":
     """The pressure [MPa] at each contact point of both linings, circles where one has lifted off.
 
     preload is a `Preload`; places are along x and y, of a drum along its circumference and its axis.
@@ -121,7 +124,7 @@ def contact_pressure(preload: Any, names: tuple[str, ...], *, title: str = "") -
         return whole
 
 
-def largest_motion(surface: Surface, moved: Any) -> str:
+def largest_motion(surface: Surface, moved: np.ndarray) -> str:
     """How the parts share a mode's motion, of nodes (k, 3), and what is drawn of the surface."""
     size = np.linalg.norm(np.abs(moved), axis=1)
     nodes = [np.unique(surface.faces[surface.parts == i]) for i in range(len(surface.names))]
@@ -133,7 +136,7 @@ def largest_motion(surface: Surface, moved: Any) -> str:
     return f"Largest motion: {said} of it. Drawn: {each}, {drawn}."
 
 
-def _in_order(seen: Any, surface: Surface) -> Any:
+def _in_order(seen: np.ndarray, surface: Surface) -> Any:
     """Faces turned to the reader, the farthest first."""
     corners = seen[surface.faces]
     far = np.argsort(np.mean(corners[..., 2], axis=1), kind="stable")

@@ -13,7 +13,10 @@ from squealbox.words import PREFIXES, quantity_label, scaled
 
 if TYPE_CHECKING:
     import xarray
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+
+    from squealbox.plots.style import Panels
 
 MOST_LINES = 8
 MOST_PANELS = 6
@@ -28,7 +31,9 @@ def numeric_answers(found: Sweep) -> list[str]:
 
 
 @drawn_by.register(Sweep)
-def sweep_overview(found: Sweep, *, answer: str | None = None, title: str = "", axes: Any = None) -> "Figure":
+def sweep_overview(
+    found: Sweep, *, answer: str | None = None, title: str = "", axes: "Panels | None" = None
+) -> "Figure":
     """An answer of a sweep over its parameters; failed points are crosses, or grey crossed fields.
 
     Parameters
@@ -68,7 +73,7 @@ def sweep_overview(found: Sweep, *, answer: str | None = None, title: str = "", 
 
 
 @drawn_by.register(DangerousPush)
-def search_for_a_push(found: DangerousPush, *, title: str = "", axes: Any = None) -> "Figure":
+def search_for_a_push(found: DangerousPush, *, title: str = "", axes: "Axes | None" = None) -> "Figure":
     """Smallest energy of a push that ends in a vibration, after each round of the search."""
     with drawing(axes, height=2.4) as panel:
         history = np.asarray(found.history)
@@ -79,7 +84,7 @@ def search_for_a_push(found: DangerousPush, *, title: str = "", axes: Any = None
 
 
 def _panel(
-    panel: Any, found: Sweep, values: "xarray.DataArray", dims: list[Any], chosen: dict[Any, int], title: str
+    panel: "Axes", found: Sweep, values: "xarray.DataArray", dims: list[Any], chosen: dict[Any, int], title: str
 ) -> None:
     ended = np.asarray(found["outcome"].isel(chosen).values, dtype=str) == "completed"
     several = [dim for dim in dims if dim not in found.dataset.coords]
@@ -95,7 +100,7 @@ def _panel(
     panel.set_title(title)
 
 
-def _lines(panel: Any, found: Sweep, values: "xarray.DataArray", dim: Any, ended: Any) -> None:
+def _lines(panel: "Axes", found: Sweep, values: "xarray.DataArray", dim: str, ended: np.ndarray) -> None:
     x, label = _along(found[dim])
     if values.dtype.kind in "OU":
         _words_over(panel, x, values)
@@ -103,7 +108,7 @@ def _lines(panel: Any, found: Sweep, values: "xarray.DataArray", dim: Any, ended
         y, unit = _numbers(values)
         table = y.reshape(len(x), -1)[:, : found.told(values)]
         for i in range(min(table.shape[1], MOST_LINES)):
-            look = {} if table.shape[1] == 1 else {"label": str(i + 1)}
+            look: dict[str, Any] = {} if table.shape[1] == 1 else {"label": str(i + 1)}
             panel.plot(x, table[:, i], **line(i), **look, marker="." if len(x) <= 60 else "")
         if table.shape[1] > 1:
             panel.legend(title=str(values.dims[-1]).replace("_", " "), loc="best")
@@ -117,7 +122,7 @@ def _lines(panel: Any, found: Sweep, values: "xarray.DataArray", dim: Any, ended
     panel.set_xlabel(label)
 
 
-def _map(panel: Any, found: Sweep, values: "xarray.DataArray", dims: list[Any], ended: Any) -> None:
+def _map(panel: "Axes", found: Sweep, values: "xarray.DataArray", dims: list[Any], ended: np.ndarray) -> None:
     (x, x_label), (y, y_label) = (_along(found[dim]) for dim in dims)
     if values.dtype.kind in "OU":
         grid, words = _coded(values)
@@ -141,7 +146,7 @@ def _map(panel: Any, found: Sweep, values: "xarray.DataArray", dims: list[Any], 
     panel.set(xlabel=x_label, ylabel=y_label)
 
 
-def _points(panel: Any, found: Sweep, values: "xarray.DataArray", dims: list[Any], ended: Any) -> None:
+def _points(panel: "Axes", found: Sweep, values: "xarray.DataArray", dims: list[Any], ended: np.ndarray) -> None:
     """Points of a sample over the first two parameters, or over the only one; other axes lie on top of each other."""
     if found["outcome"].ndim != ended.ndim or values.dtype.kind in "OU":
         raise ValueError("words, or a sample with more than one further axis: draw them from the dataset")
@@ -170,14 +175,14 @@ def _points(panel: Any, found: Sweep, values: "xarray.DataArray", dims: list[Any
     panel.set_ylabel(labels[1])
 
 
-def _words_over(panel: Any, x: Any, values: "xarray.DataArray") -> None:
+def _words_over(panel: "Axes", x: np.ndarray, values: "xarray.DataArray") -> None:
     codes, words = _coded(values)
     panel.plot(x, codes.reshape(len(x), -1), "o", color=LINES[1][0], markersize=3.0)
     panel.set_yticks(range(len(words)), [word.replace("_", " ") or "none" for word in words])
     panel.set_ylim(-0.5, len(words) - 0.5)
 
 
-def _word_map(panel: Any, x: Any, y: Any, grid: Any, words: list[str]) -> None:
+def _word_map(panel: "Axes", x: np.ndarray, y: np.ndarray, grid: np.ndarray, words: list[str]) -> None:
     from matplotlib.colors import ListedColormap
     from matplotlib.patches import Patch
 
@@ -190,7 +195,7 @@ def _word_map(panel: Any, x: Any, y: Any, grid: Any, words: list[str]) -> None:
     panel.legend(handles=handles, loc="best")
 
 
-def _crossed(panel: Any, x: Any, y: Any, ended: Any) -> None:
+def _crossed(panel: "Axes", x: np.ndarray, y: np.ndarray, ended: np.ndarray) -> None:
     if np.all(ended):
         return
     panel.set_facecolor(UNKNOWN)
@@ -215,7 +220,7 @@ def _numbers(values: "xarray.DataArray", to: str | None = None) -> tuple[Any, st
     return array / factor, "" if read == "1" else read
 
 
-def _spaced(panel: Any, axis: str, values: "xarray.DataArray") -> None:
+def _spaced(panel: "Axes", axis: str, values: "xarray.DataArray") -> None:
     """A logarithmic axis for values that were spaced so."""
     if values.dtype.kind != "f" or values.size < 3 or float(values.min()) <= 0.0:
         return
@@ -224,7 +229,7 @@ def _spaced(panel: Any, axis: str, values: "xarray.DataArray") -> None:
         panel.set(**{f"{axis}scale": "log"})
 
 
-def _largest(numbers: Any, ndim: int) -> Any:
+def _largest(numbers: np.ndarray, ndim: int) -> Any:
     if numbers.ndim == ndim:
         return numbers
     flat = numbers.reshape(*numbers.shape[:ndim], -1)

@@ -5,7 +5,9 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from matplotlib.axis import Axis
     from matplotlib.figure import Figure
+    from matplotlib.ticker import ScalarFormatter
 
 PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 3: "k", 6: "M", 9: "G", 12: "T"}
 PLAIN = re.compile(r"(N|Pa|J|W|Hz|m|s)\b(?!\d|²|³|\^)")  # units that take a prefix, at the beginning of a compound one
@@ -46,7 +48,7 @@ def prefixed(unit: str, power: int) -> tuple[int, str]:
     return power, f"10{str(power).translate(RAISED)} {unit.strip('-')}".strip()
 
 
-def _into_the_unit(axis: Any, formatter: Any) -> None:
+def _into_the_unit(axis: "Axis", formatter: "ScalarFormatter") -> None:
     """Numbers along the axis without their power of ten, which the label then says; beside it where it has no unit."""
     from matplotlib.ticker import ScalarFormatter
 
@@ -73,7 +75,7 @@ def _into_the_unit(axis: Any, formatter: Any) -> None:
     axis.set_label_text(f"{label[: found.start()]}[{unit}]")
 
 
-def _crowded(axis: Any, side: int, gap: float) -> bool:
+def _crowded(axis: "Axis", side: int, gap: float) -> bool:
     """True where two numbers along an axis come closer than a `gap` [dots]."""
     low, high = sorted(axis.get_view_interval())
     seen = zip(axis.get_majorticklocs(), axis.get_ticklabels(), strict=False)

@@ -12,7 +12,10 @@ from squealbox.studies import IntervalBounds, MorrisEffects, SobolIndices, Squea
 from squealbox.words import number, quantity_label
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+
+    from squealbox.plots.style import Panels
 
 QUIET, SQUEAL = "#9ecae1", "#f0b27a"
 SIGMA = "\N{GREEK SMALL LETTER SIGMA}"
@@ -22,7 +25,7 @@ BINS = 12  # of equal probability, in which the share of squeal is counted
 
 
 @drawn_by.register(SquealProbability)
-def squeal_probability(found: SquealProbability, *, title: str = "", axes: Any = None) -> "Figure":
+def squeal_probability(found: SquealProbability, *, title: str = "", axes: "Panels | None" = None) -> "Figure":
     """How the quantity is spread, with the part that squeals, and the share of squeal over each parameter.
 
     `axes` is one panel, for the histogram alone; a figure of its own also gets a panel for each of up to four
@@ -54,7 +57,7 @@ def squeal_probability(found: SquealProbability, *, title: str = "", axes: Any =
         return figure_of(first)
 
 
-def _histogram(panel: Any, found: SquealProbability, title: str) -> None:
+def _histogram(panel: "Axes", found: SquealProbability, title: str) -> None:
     about = found.settings["quantity"]
     values = found.values[np.isfinite(found.values)]
     limit = about["limit"]
@@ -76,7 +79,7 @@ def _histogram(panel: Any, found: SquealProbability, title: str) -> None:
     panel.set_title(f"{title}\n{text}" if title else text)
 
 
-def _edges(values: Any, limit: float) -> Any:
+def _edges(values: np.ndarray, limit: float) -> Any:
     """Edges of the bars, one of them at the limit where it is within the values; far outliers go to the last bar."""
     low, high = np.quantile(values, (0.001, 0.999))
     if low == high:
@@ -104,7 +107,7 @@ def _shares(found: SquealProbability, i: int) -> tuple[Any, Any, Any, Any]:
 
 
 @drawn_by.register(SobolIndices)
-def sobol_indices(found: SobolIndices, *, title: str = "", axes: Any = None) -> "Figure":
+def sobol_indices(found: SobolIndices, *, title: str = "", axes: "Axes | None" = None) -> "Figure":
     """First-order and total index of each parameter as bars with their intervals, the strongest first."""
     order = np.argsort(-found.total)
     places = np.arange(order.size)
@@ -130,7 +133,7 @@ def sobol_indices(found: SobolIndices, *, title: str = "", axes: Any = None) -> 
 
 
 @drawn_by.register(MorrisEffects)
-def morris_effects(found: MorrisEffects, *, title: str = "", axes: Any = None) -> "Figure":
+def morris_effects(found: MorrisEffects, *, title: str = "", axes: "Axes | None" = None) -> "Figure":
     """Strength mu* against spread sigma; below the line sigma = mu*/2 a parameter acts nearly alone and straight."""
     about = found.settings["quantity"]
     with drawing(axes, width=1.3 * COLUMN, height=2.9) as panel:
@@ -162,7 +165,7 @@ def morris_effects(found: MorrisEffects, *, title: str = "", axes: Any = None) -
 
 
 @drawn_by.register(IntervalBounds)
-def interval_bounds(found: IntervalBounds, *, title: str = "", axes: Any = None) -> "Figure":
+def interval_bounds(found: IntervalBounds, *, title: str = "", axes: "Panels | None" = None) -> "Figure":
     """The range as a bar with the limit of squeal; a figure of its own also shows where in the box the ends lie."""
     if axes is not None:
         with drawing(axes) as panel:
@@ -188,7 +191,7 @@ def interval_bounds(found: IntervalBounds, *, title: str = "", axes: Any = None)
         return figure_of(top)
 
 
-def _range(panel: Any, found: IntervalBounds, title: str) -> None:
+def _range(panel: "Axes", found: IntervalBounds, title: str) -> None:
     about = found.settings["quantity"]
     low, high = float(found.low), float(found.high)
     limit = about["limit"]

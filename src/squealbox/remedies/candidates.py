@@ -21,7 +21,7 @@ from squealbox.countermeasures import (
 from squealbox.design import Design
 from squealbox.law import FrictionLaw
 from squealbox.loops import PID, ActiveForce
-from squealbox.parameters import ParameterError
+from squealbox.parameters import Parameter, ParameterError
 from squealbox.stability import complex_modes
 
 LARGEST_CHANGE = 0.5  # of a parameter, up or down
@@ -53,7 +53,7 @@ class Candidate:
     tuned: str = ""  # the parameter that scatters with production though the brake's data do not know it
 
 
-def candidates_for(brake: Design, friction: Any) -> list[Candidate]:
+def candidates_for(brake: Design, friction: Design) -> list[Candidate]:
     """Every candidate the brake itself suggests; `friction` is the brake at the friction it shall be quiet at.
 
     Absorbers are those of `best_absorber`, tuned to the brake as it is.
@@ -113,7 +113,7 @@ def _parameters(brake: Design) -> Iterator[Candidate]:
             yield parameter_candidate(brake, path, about, value, sign)
 
 
-def parameter_candidate(brake: Design, path: str, about: Any, value: float, sign: float) -> Candidate:
+def parameter_candidate(brake: Design, path: str, about: Parameter, value: float, sign: float) -> Candidate:
     """More (`sign` 1) or less (-1) of one parameter, by up to half of it."""
     turn = about.unit == "rad"
     most = sign * (LARGEST_TURN if turn else LARGEST_CHANGE * abs(value))
@@ -303,7 +303,7 @@ def _speeds(brake: Design) -> Any:
     return equilibrium(brake.system()).sliding_speed
 
 
-def more_friction(brake: Design, factor: float) -> Design:
+def more_friction(brake: Design, factor: float | np.ndarray) -> Design:
     """The brake with every friction coefficient of its laws times `factor`."""
     laws = list(laws_of(brake))
     if not laws:
@@ -315,7 +315,7 @@ def more_friction(brake: Design, factor: float) -> Design:
     })  # fmt: skip
 
 
-def laws_of(design: Any, prefix: str = "") -> Iterator[tuple[str, FrictionLaw]]:
+def laws_of(design: Design, prefix: str = "") -> Iterator[tuple[str, FrictionLaw]]:
     """The friction laws of a design and of the brake within it, each with its name."""
     for name in design.field_names():
         value = getattr(design, name)

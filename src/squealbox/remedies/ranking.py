@@ -1,6 +1,6 @@
 """Every candidate at the dose it needs, how it fares over the scatter of production, and the table of them all."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -203,7 +203,9 @@ def silence(
     )  # fmt: skip
 
 
-def _row(each: Candidate, brake: Design, margin: float, lot: Any, tuning: Any, push: float) -> dict[str, Any]:
+def _row(
+    each: Candidate, brake: Design, margin: float, lot: Mapping[str, Any], tuning: np.ndarray, push: float
+) -> dict[str, Any]:
     dose, reached = _dose(each, margin)
     cured = each.make(dose)
     growth, later = float(growth_of(cured)), float(growth_of(more_friction(cured, 1.0 + margin)))
@@ -247,10 +249,10 @@ def _dose(each: Candidate, margin: float) -> tuple[float, bool]:
     return float(high), True
 
 
-def _growths(each: Candidate, doses: Any, margin: float) -> Any:
+def _growths(each: Candidate, doses: np.ndarray, margin: float) -> Any:
     """Growth rates (k,) at the margin; inf at doses the brake's own rules refuse."""
 
-    def growth(some: Any) -> Any:
+    def growth(some: float | np.ndarray) -> Any:
         try:
             return growth_of(more_friction(each.make(some), 1.0 + margin))
         except (ParameterError, InvalidSystem):
@@ -262,12 +264,12 @@ def _growths(each: Candidate, doses: Any, margin: float) -> Any:
     return np.array([growth(float(dose)) for dose in doses])  # one by one: some of them may be possible
 
 
-def _share(brake: Design, lot: dict[str, Any]) -> float:
+def _share(brake: Design, lot: Mapping[str, Any]) -> float:
     """Share of the lot that squeals."""
     return float(np.mean(growth_of(brake.replace(lot)) > 0.0))
 
 
-def _share_cured(each: Candidate, cured: Design, brake: Design, lot: dict[str, Any], tuning: Any) -> float:
+def _share_cured(each: Candidate, cured: Design, brake: Design, lot: Mapping[str, Any], tuning: np.ndarray) -> float:
     """Share of the lot that squeals with a cure; a parameter that it changes scatters about its new value."""
     values: dict[str, Any] = {}
     if each.values is None:

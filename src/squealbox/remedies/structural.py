@@ -81,7 +81,7 @@ def _masses(small: ReducedBrake, local: LocalSensitivity) -> Iterator[Candidate]
         yield _mass(small, node, place)
 
 
-def _mass(small: ReducedBrake, node: int, place: Any) -> Candidate:
+def _mass(small: ReducedBrake, node: int, place: np.ndarray) -> Candidate:
     where = ", ".join(f"{1e3 * x:.0f}" for x in place)
     return Candidate(
         f"mass on node {node}", lambda dose: with_mass(small, node, dose), MASSES, "kg",

@@ -1,10 +1,11 @@
 """How much friction a lot stands: up to where each of its brakes is stable, and whose scatter decides that."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.design import Design
 from squealbox.parameters import ParameterError
@@ -40,7 +41,7 @@ class Lot:
     names: tuple[str, ...] = ()
     share: tuple[float, ...] = ()
 
-    def stable(self, friction: Any) -> Any:
+    def stable(self, friction: ArrayLike) -> Any:
         """Share of the lot that is stable at every friction up to this."""
         return np.mean(self.lost > np.asarray(friction)[..., None], axis=-1)
 
@@ -69,8 +70,8 @@ def lot_of(brake: Design, top: float = 1.0, *, brakes: int = BRAKES, seed: int =
     scatter = Scatter(chosen)
     none = NONE * 2.0 * np.pi * float(np.nanmax(complex_modes(more_friction(brake, 0.0)).frequency))
 
-    def lost(values: Any, begin: float, end: float) -> Any:
-        def grows(which: Any, friction: Any) -> Any:
+    def lost(values: Mapping[str, Any], begin: float, end: float) -> Any:
+        def grows(which: np.ndarray, friction: np.ndarray) -> Any:
             some = brake.replace({name: np.asarray(each)[which] for name, each in values.items()})
             return growth_of(more_friction(some, friction / limit)) > none
 

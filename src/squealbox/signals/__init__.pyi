@@ -64,4 +64,6 @@ from .growth import LEVEL as LEVEL
 from .radiation import AREA as AREA
 from .radiation import AUDIBLE as AUDIBLE
 from .recordings import universal_sets as universal_sets
+from .sampling import MotionLike as MotionLike
+from .sampling import Signal as Signal
 from .wav import SAMPLING as SAMPLING

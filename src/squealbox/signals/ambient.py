@@ -15,10 +15,11 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.arguments import public
 from squealbox.result import Array, Outcome, Result, quantity
-from squealbox.signals.recordings import as_recording
+from squealbox.signals.recordings import Recording, as_recording
 from squealbox.signals.sampling import SignalError
 
 SURE = 1.959963984540054  # standard deviations of a 95 % interval
@@ -69,7 +70,7 @@ class OperationalModes(Result):
 
 @public()
 def operational_modes(
-    recording: Any,
+    recording: Recording | ArrayLike,
     rate: float | None = None,
     *,
     channel: int | str = 0,
@@ -148,7 +149,7 @@ class DampingOnset(Result):
 
 
 def damping_onset(
-    found: Sequence[OperationalModes], at: Any, *, near: float | None = None, name: str = "value"
+    found: Sequence[OperationalModes], at: ArrayLike, *, near: float | None = None, name: str = "value"
 ) -> DampingOnset:
     """The onset of squeal from the damping before it: growth rates against `at`, continued to zero.
 
@@ -197,7 +198,7 @@ def damping_onset(
     )  # fmt: skip
 
 
-def _crossing(level: float, slope: float, covariance: Any) -> tuple[float, float, float, bool]:
+def _crossing(level: float, slope: float, covariance: np.ndarray) -> tuple[float, float, float, bool]:
     """-level / slope with Fieller's 95 % interval, and whether it is bounded."""
     (a, b), (_, c) = covariance
     square = slope**2 - SURE**2 * c
@@ -222,13 +223,13 @@ class _Fit:
         return int((self.theta.size - 1) // OF_MODE)
 
 
-def _flat(power: Any) -> _Fit:
+def _flat(power: np.ndarray) -> _Fit:
     level = float(np.mean(power))
     return _Fit(np.array([np.log(level)]), np.full((1, 1), 1.0 / power.size), np.full(power.size, level),
                 -float(power.size * (np.log(level) + 1.0)))  # fmt: skip
 
 
-def _with_one_more(f: Any, power: Any, found: _Fit) -> list[Any]:
+def _with_one_more(f: np.ndarray, power: np.ndarray, found: _Fit) -> list[Any]:
     """Starts for one more mode, where the spectrum stands highest above what is known, one for each width."""
     ratio, starts = power / found.spectrum, []
     for zeta in WIDTHS:
@@ -247,7 +248,7 @@ def _with_one_more(f: Any, power: Any, found: _Fit) -> list[Any]:
     return starts
 
 
-def _spectrum(f: Any, theta: Any) -> tuple[Any, Any]:
+def _spectrum(f: np.ndarray, theta: np.ndarray) -> tuple[Any, Any]:
     """P at the frequencies and its derivatives by each parameter, shape (parameters, lines)."""
     floor = np.exp(theta[0])
     total, slopes = np.full(f.size, floor), [np.full(f.size, floor)]
@@ -262,7 +263,7 @@ def _spectrum(f: Any, theta: Any) -> tuple[Any, Any]:
     return total, np.array(slopes)
 
 
-def _climb(f: Any, power: Any, theta: Any) -> _Fit:
+def _climb(f: np.ndarray, power: np.ndarray, theta: np.ndarray) -> _Fit:
     """The nearest maximum of the likelihood by Fisher scoring with Levenberg's damping; no step leaves its peak."""
     spectrum, slopes = _spectrum(f, theta)
     gain, damping = _likelihood(power, spectrum), 1e-3
@@ -291,11 +292,13 @@ def _climb(f: Any, power: Any, theta: Any) -> _Fit:
     return _Fit(theta, np.linalg.pinv(relative @ relative.T, hermitian=True), spectrum, gain)
 
 
-def _likelihood(power: Any, spectrum: Any) -> float:
+def _likelihood(power: np.ndarray, spectrum: np.ndarray) -> float:
     return -float(np.sum(np.log(spectrum) + power / spectrum)) if np.all(spectrum > 0.0) else -np.inf
 
 
-def _result(f: Any, power: Any, found: _Fit, duration: float, settings: dict[str, Any]) -> OperationalModes:
+def _result(
+    f: np.ndarray, power: np.ndarray, found: _Fit, duration: float, settings: dict[str, Any]
+) -> OperationalModes:
     rows = found.theta[1:].reshape(-1, OF_MODE)
     order = np.argsort(rows[:, 1])
     spread = np.sqrt(np.diag(found.covariance))[1:].reshape(-1, OF_MODE)[order]

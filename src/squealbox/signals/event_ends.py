@@ -12,13 +12,13 @@ QUIET = 0.05  # share of the plateau from which growth is read, if the noise is 
 LOUD = 0.45  # share of the plateau up to which growth is read
 
 
-def edges(middles: Any, amplitude: Any, noise: Any, hop: float) -> tuple[float, float]:
+def edges(middles: np.ndarray, amplitude: np.ndarray, noise: np.ndarray, hop: float) -> tuple[float, float]:
     """Onset and end: where half of what follows within a frame is reached, for three frames on end above the noise.
 
     A tone that sets in at once shows the share of the window that holds it; the best such instant is taken.
     """
 
-    def first(times: Any, heights: Any, quiet: Any) -> float:
+    def first(times: np.ndarray, heights: np.ndarray, quiet: np.ndarray) -> float:
         after = np.append(heights, np.full(4, np.nan))[3:]
         half = 0.5 * np.nanmedian(np.lib.stride_tricks.sliding_window_view(after, 5), axis=1)
         lasts = np.min(np.lib.stride_tricks.sliding_window_view(heights, 3), axis=1)[: len(half)]
@@ -33,7 +33,7 @@ def edges(middles: Any, amplitude: Any, noise: Any, hop: float) -> tuple[float, 
     return begin, max(end, begin + hop)
 
 
-def _rise(after: Any) -> Any:
+def _rise(after: np.ndarray) -> Any:
     """Amplitude that Hann's window shows of a tone which sets in `after` of its length before the window's middle.
 
     The middle of what its line holds, 1 - F, and of what all lines hold, sqrt(1 - G); the lines beside it are counted.
@@ -45,7 +45,7 @@ def _rise(after: Any) -> Any:
 
 
 def steady_frequency(
-    x: Any, rate: float, near: float, onset: float, end: float, length: int
+    x: np.ndarray, rate: float, near: float, onset: float, end: float, length: int
 ) -> tuple[float, float] | None:
     """The frequency over the middle of an event by maximum likelihood, with its error."""
     a, b = int((onset + 0.1 * (end - onset)) * rate), int((end - 0.1 * (end - onset)) * rate)
@@ -70,7 +70,7 @@ def steady_frequency(
 
 
 def rate_at(
-    x: Any, rate: float, near: float, onset: float, end: float, length: int, *, backwards: bool
+    x: np.ndarray, rate: float, near: float, onset: float, end: float, length: int, *, backwards: bool
 ) -> tuple[float, float, float, float]:
     """Growth at the onset or, `backwards`, the rate at the end, and the frequency there, each followed by its error.
 

@@ -9,17 +9,18 @@ Band and threshold follow SAE J2521 as its public summary states them: a peak of
 (from 1.25 kHz on for full corners).
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.arguments import public
 from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.signals.event_ends import edges, rate_at, steady_frequency
 from squealbox.signals.radiation import HEARING, a_weighting
-from squealbox.signals.recordings import as_recording
+from squealbox.signals.recordings import Recording, as_recording
 from squealbox.signals.sampling import SignalError
 from squealbox.signals.tracks import Frames, Track, lines_of, seen, stands_out, tracks
 
@@ -112,7 +113,7 @@ class SquealEvents(Result):
 
 @public()
 def squeal_events(
-    recording: Any,
+    recording: Recording | ArrayLike,
     rate: float | None = None,
     *,
     channel: int | str = 0,
@@ -209,8 +210,8 @@ _OF_SAMPLES = _NAMES[6:12]
 
 
 def _beneath(
-    frames: Frames, low: float, chance: float, events: Sequence[dict[str, Any]], weigh: Any, reference: float,
-    least: float | None,
+    frames: Frames, low: float, chance: float, events: Sequence[dict[str, Any]], weigh: Callable[[Any], Any],
+    reference: float, least: float | None,
 ) -> list[str]:  # fmt: skip
     """A tone below the band that is louder than all in it: what is told may be no more than its harmonic."""
     found = [_event(each, frames, weigh, reference) for each in tracks(frames, chance)
@@ -236,7 +237,7 @@ def _padded(value: Any, longest: int) -> Any:
     return value if np.ndim(value) == 0 else np.append(value, np.full(longest - len(value), np.nan))
 
 
-def _event(track: Track, frames: Frames, weigh: Any, reference: float) -> dict[str, Any]:
+def _event(track: Track, frames: Frames, weigh: Callable[[Any], Any], reference: float) -> dict[str, Any]:
     """What the frames tell of an event; see `_of_samples`."""
     numbers, places = np.array(track.frames), lines_of(track)
     step = frames.frequency[1] - frames.frequency[0]
@@ -263,7 +264,7 @@ def _event(track: Track, frames: Frames, weigh: Any, reference: float) -> dict[s
     }  # fmt: skip
 
 
-def _is_steady(frequency: Any, step: float) -> bool:
+def _is_steady(frequency: np.ndarray, step: float) -> bool:
     """Whether the means of an event's four quarters differ by no more than its frames do among each other."""
     whole = _full(frequency)
     if len(whole) < 8:
@@ -284,7 +285,7 @@ def _with_ends(track: Track, frames: Frames) -> tuple[Any, Any, Any]:
     return frames.middle[numbers], np.sqrt(np.maximum(square, 0.0)), np.sqrt(noise)
 
 
-def _of_samples(event: dict[str, Any], x: Any, rate: float, length: int) -> None:
+def _of_samples(event: dict[str, Any], x: np.ndarray, rate: float, length: int) -> None:
     """Frequency and rates of an event from the samples themselves, which tell them better than frames."""
     near, onset, end = event["frequency"], event["onset"], event["end"]
     exact = steady_frequency(x, rate, near, onset, end, length) if event["steady"] else None
@@ -294,6 +295,6 @@ def _of_samples(event: dict[str, Any], x: Any, rate: float, length: int) -> None
     event.update(zip(_OF_SAMPLES, (*grown, *rate_at(x, rate, near, onset, end, length, backwards=True)), strict=False))
 
 
-def _full(weighted: Any) -> Any:
+def _full(weighted: np.ndarray) -> Any:
     """Frames that the event fills: its ends are left out where it is long enough."""
     return weighted[2:-2] if len(weighted) > 8 else weighted

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 STEPS = 60
 CLOSE = 1e-2  # a step this small beside the standard deviation ends the search
@@ -43,7 +44,7 @@ class Exponentials:
 class FoldedSamples:
     """Samples x (n,) laid out in rows of about sqrt(n), ready for inner products with exponentials."""
 
-    def __init__(self, x: Any) -> None:
+    def __init__(self, x: np.ndarray) -> None:
         self.x = np.ascontiguousarray(x, dtype=float)
         self.size = int(self.x.size)
         self.width = max(int(np.sqrt(self.size)), 1)
@@ -54,7 +55,7 @@ class FoldedSamples:
         self.power = _power(self.x)
         self.powers = np.arange(self.rows + self.width, dtype=float) ** np.arange(3)[:, None]
 
-    def projections(self, exponents: Any) -> Any:
+    def projections(self, exponents: np.ndarray) -> Any:
         """Sums over n of x s^j exp(lambda (n - r)), j = 0, 1 and s = (n - r)/N: shape (k, 2)."""
         ends = self.ends(exponents)
         places = np.arange(self.width)
@@ -70,11 +71,11 @@ class FoldedSamples:
         one = np.sum(coarse * (starts * level + ramp), axis=0) / self.size
         return np.stack([zero, one], axis=1)
 
-    def ends(self, exponents: Any) -> Any:
+    def ends(self, exponents: np.ndarray) -> Any:
         """The sample at which each component is largest, 0 or n - 1."""
         return np.where(np.real(exponents) > 0.0, self.size - 1, 0)
 
-    def moments(self, exponents: Any) -> tuple[Any, Any]:
+    def moments(self, exponents: np.ndarray) -> tuple[Any, Any]:
         """Sums over n of E_i s_i^p E_j s_j^q, p, q = 0, 1, and the same with conj(E_j s_j): each (2, 2, k, k).
 
         E_i = exp(l_i (n - r_i)) and s_i = (n - r_i)/N.
@@ -101,7 +102,7 @@ class FoldedSamples:
         found[1, 1] = (two - (left + right) * one + left * right * zero) / size**2
         return found[..., :count], found[..., count:]
 
-    def synthesised(self, exponents: Any, amplitudes: Any, offset: float) -> Any:
+    def synthesised(self, exponents: np.ndarray, amplitudes: np.ndarray, offset: float) -> Any:
         """The model at every sample, shape (n,)."""
         ends = self.ends(exponents)
         fine = np.exp(np.outer(exponents, np.arange(self.width)))
@@ -112,7 +113,9 @@ class FoldedSamples:
         return offset + waves.ravel()[: self.size]
 
 
-def fit_exponentials(x: Any, guess: Any, *, offset: bool = True, close: float = CLOSE) -> Exponentials:
+def fit_exponentials(
+    x: FoldedSamples | np.ndarray, guess: ArrayLike, *, offset: bool = True, close: float = CLOSE
+) -> Exponentials:
     """The least-squares components nearest to `guess` (k,), exponents in 1/sample.
 
     A step of less than `close` standard deviations is the last. Without convergence the best that was reached is
@@ -154,7 +157,7 @@ def fit_exponentials(x: Any, guess: Any, *, offset: bool = True, close: float = 
     return Exponentials(exponents, amplitudes, float(constant), covariance, residual, converged)
 
 
-def matched_energy(record: FoldedSamples, exponents: Any) -> Any:
+def matched_energy(record: FoldedSamples, exponents: ArrayLike) -> Any:
     """Energy that one component with each of these exponents would take out of the record, shape (k,)."""
     exponents = np.asarray(exponents, dtype=complex)
     found = record.projections(exponents)[:, 0]
@@ -162,7 +165,7 @@ def matched_energy(record: FoldedSamples, exponents: Any) -> Any:
     return 2.0 * np.abs(found) ** 2 / power
 
 
-def prediction_filter(residual: Any, most: int) -> Any:
+def prediction_filter(residual: np.ndarray, most: int) -> Any:
     """Coefficients (1, a_1, ..., a_p) that make noise white, p <= `most` by the least BIC; (1,) for white noise.
 
     Burg's recursion, which sees what is weak beside what is strong; 50 samples or more for each coefficient.
@@ -185,7 +188,7 @@ def prediction_filter(residual: Any, most: int) -> Any:
     return best
 
 
-def _power(x: Any) -> float:
+def _power(x: np.ndarray) -> float:
     return float(np.einsum("i,i->", x, x))
 
 
@@ -197,12 +200,12 @@ def _geometric(rate: float, size: int) -> float:
 Sums = tuple[Any, Any, Any]  # moments of pairs, of pairs with the second conjugate, and products with the data
 
 
-def _sums(record: FoldedSamples, exponents: Any, offset: bool) -> Sums:
+def _sums(record: FoldedSamples, exponents: np.ndarray, offset: bool) -> Sums:
     every = np.append(exponents, 0.0) if offset else exponents
     return (*record.moments(every), record.projections(every))
 
 
-def _products(sums: Sums, scale: Any, offset: bool, derivatives: bool) -> tuple[Any, Any]:
+def _products(sums: Sums, scale: np.ndarray, offset: bool, derivatives: bool) -> tuple[Any, Any]:
     """Real Gram matrix of the columns and their products with the data; see `_expanded` for their order."""
     plain, mixed, data = sums
     scales = np.append(scale, 1.0) if offset else scale
@@ -218,7 +221,9 @@ def _products(sums: Sums, scale: Any, offset: bool, derivatives: bool) -> tuple[
     return _expanded(straight, crossed, (weights * data.T).ravel()[:last], count, offset)
 
 
-def _expanded(straight: Any, crossed: Any, column: Any, count: int, offset: bool) -> tuple[Any, Any]:
+def _expanded(
+    straight: np.ndarray, crossed: np.ndarray, column: np.ndarray, count: int, offset: bool
+) -> tuple[Any, Any]:
     """Real parts and imaginary parts as columns of their own: Re(z c) = Re z Re c - Im z Im c."""
     size = len(column)
     gram, data = np.empty((2 * size, 2 * size)), np.empty(2 * size)
@@ -233,7 +238,7 @@ def _expanded(straight: Any, crossed: Any, column: Any, count: int, offset: bool
     return gram, data
 
 
-def _linear(record: FoldedSamples, exponents: Any, sums: Sums, offset: bool) -> tuple[tuple[Any, float], float]:
+def _linear(record: FoldedSamples, exponents: np.ndarray, sums: Sums, offset: bool) -> tuple[tuple[Any, float], float]:
     """The best amplitudes and constant for these exponents, and the sum of squares left."""
     gram, data = _products(sums, np.ones(len(exponents)), offset, derivatives=False)
     found = _inverse(gram) @ data
@@ -243,7 +248,7 @@ def _linear(record: FoldedSamples, exponents: Any, sums: Sums, offset: bool) -> 
     return (amplitudes, constant), record.power - float(data @ found)
 
 
-def _normal_equations(exponents: Any, linear: tuple[Any, float], sums: Sums, offset: bool) -> tuple[Any, Any]:
+def _normal_equations(exponents: np.ndarray, linear: tuple[Any, float], sums: Sums, offset: bool) -> tuple[Any, Any]:
     """J'J and J'(x - model) for amplitudes, constant and exponents (times n) together."""
     amplitudes, constant = linear
     gram, data = _products(sums, amplitudes, offset, derivatives=True)
@@ -255,7 +260,7 @@ def _normal_equations(exponents: Any, linear: tuple[Any, float], sums: Sums, off
     return gram, data - gram @ now
 
 
-def _step(gram: Any, slope: Any, count: int, damping: float, variance: float) -> tuple[Any, Any]:
+def _step(gram: np.ndarray, slope: np.ndarray, count: int, damping: float, variance: float) -> tuple[Any, Any]:
     """The step of the exponents times n, shape (k,) complex, and the standard deviations they have there."""
     damped = gram + damping * np.diag(np.diag(gram)) if damping > 0.0 else gram
     inverse = _inverse(damped)
@@ -264,7 +269,7 @@ def _step(gram: Any, slope: Any, count: int, damping: float, variance: float) ->
     return found[0::2] + 1j * found[1::2], np.sqrt(np.maximum(spread, 0.0)) + 1e-300
 
 
-def _inverse(gram: Any) -> Any:
+def _inverse(gram: np.ndarray) -> Any:
     """The inverse in columns of unit length; columns that say the same share their part."""
     scale = 1.0 / np.sqrt(np.maximum(np.diag(gram), 1e-300))
     outer = scale[:, None] * scale

@@ -4,11 +4,12 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.arguments import public
 from squealbox.result import Array, Result, quantity
 from squealbox.signals.exponentials import fit_exponentials
-from squealbox.signals.sampling import Samples, SignalError, given, unfolded
+from squealbox.signals.sampling import Samples, Signal, SignalError, given, unfolded
 from squealbox.signals.spectra import spectrum, window_weights
 from squealbox.signals.tones import SLOW, Tones, tones
 
@@ -44,7 +45,7 @@ class GrowthRate(Result):
 
 
 @public()
-def dominant_frequency(signal: Any, t: Any = None, *, above: float | None = None, **cut: Any) -> float:
+def dominant_frequency(signal: Signal, t: ArrayLike | None = None, *, above: float | None = None, **cut: Any) -> float:
     """Frequency [Hz] of the strongest component, much finer than one over the length of the record.
 
     The maximum-likelihood estimate for damped or growing sinusoids in noise, white or coloured (see `growth_rate`); the
@@ -64,7 +65,7 @@ def dominant_frequency(signal: Any, t: Any = None, *, above: float | None = None
     return float(found.exponents[_main(found, data, above)].imag / (2.0 * np.pi))
 
 
-def highest_line(signal: Any, t: Any = None, **cut: Any) -> float:
+def highest_line(signal: Signal, t: ArrayLike | None = None, **cut: Any) -> float:
     """Frequency [Hz] at which the transform of the record under a Hann window is highest, above two cycles.
 
     What `dominant_frequency` was before it asked whether a record can tell: there is always a highest line, also in
@@ -92,7 +93,7 @@ def highest_line(signal: Any, t: Any = None, **cut: Any) -> float:
 
 @public()
 def growth_rate(
-    signal: Any, t: Any = None, *, frequency: float | None = None, periods: float = 8.0, **cut: Any
+    signal: Signal, t: ArrayLike | None = None, *, frequency: float | None = None, periods: float = 8.0, **cut: Any
 ) -> GrowthRate:
     """Growth rate [1/s] of the component at `frequency` [Hz], left out the strongest, by maximum likelihood.
 
@@ -247,7 +248,7 @@ def with_error(value: float, error: float) -> str:
     return f"{round(float(value), -place) + 0.0:.{decimals}f} +- {round(float(error), -place):.{decimals}f}"
 
 
-def slope(t: Any, y: Any) -> tuple[float, float]:
+def slope(t: ArrayLike, y: ArrayLike) -> tuple[float, float]:
     """Slope of the line through (t, y) and its 95 % half-width, widened where successive misfits agree.
 
     With lag-one correlation r of the misfits, m points count as m (1 - r)/(1 + r). Fewer than three points have an

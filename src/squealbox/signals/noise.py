@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.signals.events import SquealEvents
@@ -70,8 +71,8 @@ def noise_matrix(
     *,
     x: str = "speed",
     y: str = "pressure",
-    x_edges: Any = None,
-    y_edges: Any = None,
+    x_edges: ArrayLike | None = None,
+    y_edges: ArrayLike | None = None,
 ) -> NoiseMatrix:
     """The noise matrix of a campaign: in which conditions how many stops squeal.
 
@@ -116,7 +117,7 @@ def noise_matrix(
     )  # fmt: skip
 
 
-def _edges(name: str, given: Any, values: Any) -> Any:
+def _edges(name: str, given: ArrayLike | None, values: np.ndarray) -> Any:
     if given is not None:
         edges: Any = np.asarray(given, dtype=float)
         if edges.ndim != 1 or edges.size < 2 or not np.all(np.isfinite(edges)) or np.any(np.diff(edges) <= 0.0):

@@ -7,11 +7,12 @@ from fractions import Fraction
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.arguments import public
 from squealbox.extras import extra
 from squealbox.result import Array, Result, quantity
-from squealbox.signals.recordings import as_recording
+from squealbox.signals.recordings import Recording, as_recording
 from squealbox.signals.sampling import SignalError
 from squealbox.signals.wav import resampled
 
@@ -40,7 +41,7 @@ class SoundQuality(Result):
 
 @public()
 def sound_quality(
-    recording: Any,
+    recording: Recording | ArrayLike,
     rate: float | None = None,
     *,
     channel: int | str = 0,

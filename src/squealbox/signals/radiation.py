@@ -18,6 +18,7 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.arguments import public
 from squealbox.result import Array, Outcome, Result, quantity
@@ -72,7 +73,7 @@ class SoundLevel(Result):
 @public()
 def sound_level(
     velocity: Any,
-    t: Any = None,
+    t: ArrayLike | None = None,
     *,
     area: float = AREA,
     distance: float = 1.0,
@@ -139,7 +140,7 @@ def sound_level(
     )
 
 
-def piston_efficiency(frequency: Any, area: float) -> Any:
+def piston_efficiency(frequency: ArrayLike, area: float) -> Any:
     """Radiation efficiency sigma = 1 - J1(2 k a) / (k a) [-] of a circular piston of `area` [m^2] in a rigid wall.
 
     Array in, array out.
@@ -152,7 +153,7 @@ def piston_efficiency(frequency: Any, area: float) -> Any:
     return np.where(x < 1e-2, 0.5 * x**2 * (1.0 - x**2 / 6.0), exact)  # the series: exact to x^4/12 of itself, 1e-9
 
 
-def a_weighting(frequency: Any) -> Any:
+def a_weighting(frequency: ArrayLike) -> Any:
     """Factor [-] of A-weighting on a pressure at `frequency` [Hz], array in, array out (IEC 61672-1, annex E)."""
     f = np.asarray(frequency, dtype=float) ** 2
     low, first, second, high = (value**2 for value in (20.598997, 107.65265, 737.86223, 12194.217))
@@ -169,6 +170,6 @@ def _lines(velocity: Any, t: Any, most: int, cut: dict[str, Any]) -> tuple[Any, 
     return np.asarray(lines.frequency), np.asarray(lines.amplitude)
 
 
-def _decibel(square: Any) -> Any:
+def _decibel(square: float | np.ndarray) -> Any:
     with np.errstate(divide="ignore"):
         return 10.0 * np.log10(square / HEARING**2)

@@ -13,6 +13,7 @@ from tokenize import TokenError
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.arguments import public
 from squealbox.cells import cells
@@ -122,7 +123,7 @@ class Recording:
         return float(np.trapezoid(np.interp(clock, times, values), clock) / (end - begin))
 
 
-def as_recording(signal: Any, rate: float | None, unit: str) -> Recording:
+def as_recording(signal: Recording | ArrayLike, rate: float | None, unit: str) -> Recording:
     """A `Recording` as it is; samples (k,) or (k, channels) with their `rate` [Hz] as one, in `unit`.
 
     Raises `SignalError` when the rate is missing.
@@ -263,7 +264,7 @@ def _csv(path: Path, size: int, rate: float | None) -> Read:
     return table, rate, [name.partition("[")[0].strip() or name for name in names], units, []
 
 
-def _uneven(times: Any, rounding: Any) -> str:
+def _uneven(times: np.ndarray, rounding: np.ndarray) -> str:
     """Why a column of times will not do: too few digits, or which step is unlike the others."""
     steps = np.diff(times)
     usual = float(np.median(steps))
@@ -349,7 +350,7 @@ def _is_number(cell: str) -> bool:
     return True
 
 
-def _clipping(x: Any, names: Sequence[str]) -> list[str]:
+def _clipping(x: np.ndarray, names: Sequence[str]) -> list[str]:
     """A sentence for each channel that stands at its largest value for several samples on end, more than once."""
     notes = []
     for i, name in enumerate(names):

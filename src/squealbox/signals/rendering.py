@@ -1,16 +1,14 @@
 """A motion as a microphone would have recorded it: a recording whose truth is known, to try the detectors on."""
 
-from typing import Any
-
 import numpy as np
 
 from squealbox.signals.radiation import AREA, DENSITY
 from squealbox.signals.recordings import Recording
-from squealbox.signals.sampling import SignalError, column, folded, samples
+from squealbox.signals.sampling import MotionLike, SignalError, column, folded, samples
 
 
 def rendered(
-    motion: Any,
+    motion: MotionLike,
     *,
     dof: int | str = 0,
     area: float = AREA,

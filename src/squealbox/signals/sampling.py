@@ -3,9 +3,10 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 LEAST = 8  # fewer samples say nothing
 COARSE = 0.05  # of the velocity: some eight instants in a period
@@ -16,6 +17,25 @@ TOO_FEW = (
 )
 COARSEST = 0.25  # of a step: times written with fewer digits do not show whether a sample is missing
 JITTER = 1e-3  # of a step: disturbs a line at half the sampling rate by 0.3 %, any other less
+
+
+class MotionLike(Protocol):
+    """A motion as this room sees it."""
+
+    @property
+    def t(self) -> Any:
+        """Instants (k,) [s]."""
+
+    @property
+    def q(self) -> Any:
+        """Displacement (k, n) [m]."""
+
+    @property
+    def qd(self) -> Any:
+        """Velocity (k, n) [m/s]."""
+
+
+Signal = ArrayLike | MotionLike  # what `values` reads as a signal
 
 
 class SignalError(ValueError):
@@ -38,8 +58,8 @@ class Samples:
 
 
 def samples(
-    signal: Any,
-    t: Any = None,
+    signal: Signal,
+    t: ArrayLike | None = None,
     *,
     rate: float | None = None,
     dof: int | str = 0,
@@ -80,7 +100,7 @@ def folded(signal: Any) -> str:
     return TOO_FEW.format(rate=(len(signal.t) - 1) / (signal.t[-1] - signal.t[0]))
 
 
-def unfolded(signal: Any, t: Any = None, **cut: Any) -> Samples:
+def unfolded(signal: Signal, t: ArrayLike | None = None, **cut: Any) -> Samples:
     """As :func:`samples`, for what can carry no caution: `SignalError` where instants are too few for the motion."""
     found = samples(signal, t, **cut)
     if found.caution:
@@ -88,7 +108,7 @@ def unfolded(signal: Any, t: Any = None, **cut: Any) -> Samples:
     return found
 
 
-def equal_steps(t: Any, rounding: Any = 0.0) -> bool:
+def equal_steps(t: ArrayLike, rounding: float | np.ndarray = 0.0) -> bool:
     """True when the times (k,) are equally spaced, to a thousandth of a step and the `rounding` [s] of their digits.
 
     Digits as coarse as a quarter of a step are not enough: a lost sample moves times by half a step.
@@ -113,7 +133,9 @@ def last_digits(numbers: Sequence[str]) -> Any:
     return 10.0 ** np.maximum(-places, leading - digits)
 
 
-def values(signal: Any, t: Any = None, *, dof: int | str = 0, rate: float | None = None) -> tuple[Any, Any]:
+def values(
+    signal: Signal, t: ArrayLike | None = None, *, dof: int | str = 0, rate: float | None = None
+) -> tuple[Any, Any]:
     """Times (k,) [s] and values (k,) of a signal, which need not be equally spaced.
 
     `signal` is an array (k,) with `t` or `rate` [Hz], or has ``.t`` and ``.q`` (k, n); `dof` is then an index or a
@@ -145,7 +167,7 @@ def values(signal: Any, t: Any = None, *, dof: int | str = 0, rate: float | None
     return times, x
 
 
-def carries(motion: Any, within: float = COARSE) -> bool:
+def carries(motion: MotionLike, within: float = COARSE) -> bool:
     """True where the kept instants of a trajectory are close enough in time for its fastest oscillation.
 
     Of a trajectory both displacement and velocity are known. Where the instants are close enough,

@@ -5,10 +5,11 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.arguments import public
 from squealbox.result import Array, Result, quantity
-from squealbox.signals.sampling import SignalError, given, samples
+from squealbox.signals.sampling import Signal, SignalError, given, samples
 
 LOBE_STEPS = 16
 
@@ -57,7 +58,7 @@ class Spectrogram(Result):
 
 
 @public()
-def spectrum(signal: Any, t: Any = None, *, window: str = "hann", pad: int = 4, **cut: Any) -> Spectrum:
+def spectrum(signal: Signal, t: ArrayLike | None = None, *, window: str = "hann", pad: int = 4, **cut: Any) -> Spectrum:
     """One-sided amplitude spectrum of a signal about its mean under the window.
 
     Parameters
@@ -156,7 +157,7 @@ def peaks(spectrum: Spectrum, count: int | None = None, *, least: float = 0.03) 
     return Peaks(place[kept[:count]], height[kept[:count]])
 
 
-def tops(x: Any, least: float, apart: int, dip: float) -> Any:
+def tops(x: np.ndarray, least: float, apart: int, dip: float) -> Any:
     """Places of the maxima of x: `least` high, the highest within `apart` points, `dip` above the way to a higher one.
 
     Those of `scipy.signal.find_peaks(x, height=least, distance=apart, prominence=dip)`, whose package takes longer to
@@ -180,7 +181,7 @@ def tops(x: Any, least: float, apart: int, dip: float) -> Any:
     return found[alone & (high - below >= dip)]
 
 
-def _lowest_before(high: Any, saddles: Any) -> Any:
+def _lowest_before(high: np.ndarray, saddles: np.ndarray) -> Any:
     """The lowest of what lies between each top and the next higher one before it, or the beginning."""
     lowest, higher = np.empty(high.size), list[tuple[float, float]]()
     for i, (height, low) in enumerate(zip(high.tolist(), saddles.tolist(), strict=False)):
@@ -200,7 +201,13 @@ def _side_lobes(window: str) -> Any:
 
 @public()
 def spectrogram(
-    signal: Any, t: Any = None, *, segment: float | None = None, window: str = "hann", overlap: float = 0.9, **cut: Any
+    signal: Signal,
+    t: ArrayLike | None = None,
+    *,
+    segment: float | None = None,
+    window: str = "hann",
+    overlap: float = 0.9,
+    **cut: Any,
 ) -> Spectrogram:
     """Amplitude spectra of successive pieces of a signal, which overlap by the share `overlap` [-].
 
@@ -223,7 +230,7 @@ def spectrogram(
     transform = ShortTimeFFT(weights, hop, data.rate, mfft=4 * length, **scale)
     first, last = transform.lower_border_end[1], transform.upper_border_begin(data.x.size)[1]
 
-    def about_mean(piece: Any) -> Any:
+    def about_mean(piece: np.ndarray) -> Any:
         return piece - np.average(piece, weights=weights, axis=-1)
 
     pieces = transform.stft_detrend(data.x, about_mean, first, last)

@@ -63,7 +63,7 @@ class Tones:
         return float(spread[2 * index]), float(spread[2 * index + 1])
 
 
-def tones(x: Any, rate: float, *, near: float | None = None, most: int = MOST, colour: bool = True) -> Tones:
+def tones(x: np.ndarray, rate: float, *, near: float | None = None, most: int = MOST, colour: bool = True) -> Tones:
     """The components of `x` (n,) sampled at `rate` [Hz], `most` of them; `near` [Hz] is where the first is looked for.
 
     `colour` False takes the noise for white.
@@ -142,7 +142,7 @@ def _whitened(record: FoldedSamples, found: Exponentials) -> tuple[Exponentials,
     return replace(again, covariance=again.covariance * np.outer(left, left)), filtered
 
 
-def _about(residual: Any, exponents: Any) -> Any:
+def _about(residual: np.ndarray, exponents: np.ndarray) -> Any:
     """Power of what a filter left about each component, beside its mean: no filter of few coefficients is perfect."""
     power = np.abs(np.fft.rfft(residual)) ** 2
     places = np.round(exponents.imag * residual.size / (2.0 * np.pi)).astype(int)
@@ -164,7 +164,7 @@ def _windows(size: int) -> list[tuple[float, Any]]:
 
 
 def _strongest(
-    record: FoldedSamples, looks: list[tuple[float, Any]], taken: Any, near: float | None
+    record: FoldedSamples, looks: list[tuple[float, Any]], taken: np.ndarray, near: float | None
 ) -> tuple[complex, bool] | None:
     """A first guess of the exponent [1/sample] of the strongest line above the noise; None when there is none.
 
@@ -211,7 +211,7 @@ def _strongest(
     return best[1], any(narrow for top, narrow in tops if abs(top - best[2]) <= 2 * length // size)
 
 
-def _around(power: Any, seen: Any, step: float) -> Any:
+def _around(power: np.ndarray, seen: np.ndarray, step: float) -> Any:
     """Median power of the lines to both sides of each place: what is as high there is a hill of the noise."""
     away = np.unique((np.arange(RING[0], RING[1] + 1) * step).astype(int))
     places = np.abs(seen[:, None] + np.concatenate([-away, away]))
@@ -220,7 +220,7 @@ def _around(power: Any, seen: Any, step: float) -> Any:
     return np.median(power[places], axis=1) / np.log(2.0)
 
 
-def _beside(other: Any, seen: Any, width: float, step: float) -> Any:
+def _beside(other: np.ndarray, seen: np.ndarray, width: float, step: float) -> Any:
     """Mean power at each place under the mirrored window, at the record's other end: noise is as high there."""
     half = max(round((8.0 + 2.0 * width) * step), 1)
     sums = np.concatenate([[0.0], np.cumsum(other, dtype=float)])
@@ -243,7 +243,7 @@ def _best_growth(record: FoldedSamples, omega: float) -> tuple[float, complex]:
 class _Floor:
     """The mean power of the noise about each place: medians over bands / ln 2, joined by lines."""
 
-    def __init__(self, place: Any) -> None:
+    def __init__(self, place: np.ndarray) -> None:
         count = place.size
         widths = np.unique(np.clip(np.geomspace(24, max(count, 25), 12).astype(int), 1, count))
         edges = np.unique(np.concatenate([[1], widths, np.linspace(1, count, 33).astype(int)[1:]]))
@@ -261,7 +261,7 @@ class _Floor:
         self.low = place < self.middles[0]
         self.toward = np.log(np.maximum(place[self.low], 0.2)) - np.log(self.middles[0])
 
-    def of(self, power: Any) -> Any:
+    def of(self, power: np.ndarray) -> Any:
         levels = np.maximum(np.sort(power[self.sample], axis=1)[:, 32], 1e-30)
         if levels.size >= 5:  # a wide line that fills a band is not its noise
             around = np.lib.stride_tricks.sliding_window_view(np.pad(levels, 2, mode="edge"), 5)

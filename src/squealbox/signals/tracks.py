@@ -5,12 +5,13 @@ with the probability p. Peaks above it that follow each other are a track.
 """
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 WANDER = 1.6  # lines a track may move from frame to frame
 GAP = 6  # frames a track may be lost for
@@ -40,7 +41,7 @@ class Frames:
     It is no less than what those lines have in that frame.
     """
 
-    def __init__(self, x: Any, rate: float, length: int, band: tuple[float, float]) -> None:
+    def __init__(self, x: np.ndarray, rate: float, length: int, band: tuple[float, float]) -> None:
         from scipy.fft import rfft
         from scipy.ndimage import median_filter
 
@@ -74,18 +75,18 @@ class Frames:
         places, middles = np.arange(last - first), 0.5 * (edges[:-1] + edges[1:])
         self.between = np.stack([np.interp(places, middles, row) for row in np.eye(count)]).astype(np.float32)
 
-    def noise(self, frames: Any) -> Any:
+    def noise(self, frames: slice) -> Any:
         """Mean square of the noise in every line of some frames, shape (frames, lines)."""
         louder, least = (np.einsum("ij,jk->ik", each[frames], self.between) for each in (self.louder, self.least))
         return np.maximum(louder * self.floor, least)
 
-    def noise_at(self, frames: Any, places: Any) -> Any:
+    def noise_at(self, frames: Sequence[int] | np.ndarray, places: np.ndarray) -> Any:
         """Mean square of the noise in one line of each frame."""
         shares = self.between[:, places].T
         louder, least = (np.sum(each[frames] * shares, axis=1) for each in (self.louder, self.least))
         return np.maximum(louder * self.floor[places], least)
 
-    def usual_noise(self, frames: Any, places: Any) -> Any:
+    def usual_noise(self, frames: np.ndarray, places: np.ndarray) -> Any:
         """The same as it is over most of the frames: a tone that begins or ends is in all lines, as a knock is."""
         noise = self.noise_at(frames, places)
         return self.floor[places] * np.median(noise / self.floor[places])
@@ -109,7 +110,7 @@ def tracks(frames: Frames, chance: float) -> Iterator[Track]:
     yield from open_tracks
 
 
-def _join(open_tracks: list[Track], frame: int, row: Any, found: Any) -> None:
+def _join(open_tracks: list[Track], frame: int, row: np.ndarray, found: np.ndarray) -> None:
     """The peaks `found` of a frame as the next points of the tracks, or as the first of new ones."""
     heights = row[found]
     free = dict.fromkeys(range(len(open_tracks)))
@@ -147,7 +148,7 @@ def lines_of(track: Track) -> Any:
     return np.round(np.subtract(track.lines, track.offsets)).astype(int)
 
 
-def _is_skirt(found: Any, heights: Any, i: int, times: float) -> bool:
+def _is_skirt(found: np.ndarray, heights: np.ndarray, i: int, times: float) -> bool:
     """Whether a peak is what the window, or the onset of a tone within a frame, shows beside one `times` higher."""
     if heights.max() <= times * heights[i]:
         return False
@@ -155,14 +156,14 @@ def _is_skirt(found: Any, heights: Any, i: int, times: float) -> bool:
     return bool(np.any(heights > times * heights[i] * np.maximum(1.0, (away / SKIRT) ** 2)))
 
 
-def _between(row: Any, k: int) -> float:
+def _between(row: np.ndarray, k: int) -> float:
     """The place of a peak between lines: of a tone under Hann's window exactly, from its line and the higher beside."""
     left, middle, right = row[k - 1 : k + 2].tolist()
     share = math.sqrt(max(left, right) / middle)
     return k + math.copysign(min(max((2.0 * share - 1.0) / (share + 1.0), 0.0), 0.5), right - left)
 
 
-def seen(offsets: Any) -> Any:
+def seen(offsets: ArrayLike) -> Any:
     """What Hann's window shows of a tone in the three lines about it, `offsets` lines off the middle one; 1.5 at 0."""
     x = np.asarray(offsets)[:, None] - np.array([-1.0, 0.0, 1.0])
     x = np.where(np.abs(np.abs(x) - 1.0) < 1e-6, x + 2e-6, x)

@@ -6,18 +6,19 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.arguments import public
-from squealbox.signals.sampling import SignalError, unfolded
+from squealbox.signals.sampling import Signal, SignalError, unfolded
 
 SAMPLING = 44100  # [Hz]
 
 
 @public()
 def sound(
-    signal: Any,
+    signal: Signal,
     path: str | os.PathLike[str],
-    t: Any = None,
+    t: ArrayLike | None = None,
     *,
     sampling: int = SAMPLING,
     level: float = 0.9,
@@ -42,7 +43,13 @@ def sound(
 
 
 def audible(
-    signal: Any, t: Any = None, *, sampling: int = SAMPLING, fade: float = 0.005, slower: float = 1.0, **cut: Any
+    signal: Signal,
+    t: ArrayLike | None = None,
+    *,
+    sampling: int = SAMPLING,
+    fade: float = 0.005,
+    slower: float = 1.0,
+    **cut: Any,
 ) -> Any:
     """The signal about its mean, shape (k,), sampled at `sampling` [Hz] and faded in and out over `fade` [s], in its
     own unit.
@@ -58,7 +65,7 @@ def audible(
     return wave * np.sin(0.5 * np.pi * np.minimum(ramp, 1.0)) ** 2
 
 
-def resampled(x: Any, ratio: Fraction) -> Any:
+def resampled(x: np.ndarray, ratio: Fraction) -> Any:
     """The samples x (k,) at `ratio` times their rate: a sum over a sinc under Kaiser's window of ten zeros either way.
 
     What `scipy.signal.resample_poly` gives, whose package takes longer to load than the sum does.
@@ -80,7 +87,7 @@ def resampled(x: Any, ratio: Fraction) -> Any:
     return wave
 
 
-def sixteen_bits(wave: Any, *, level: float = 0.9, loudest: float | None = None) -> Any:
+def sixteen_bits(wave: np.ndarray, *, level: float = 0.9, loudest: float | None = None) -> Any:
     """A wave (k,) as 16-bit samples; its largest value, or one of size `loudest` [SI], becomes `level` [-] of full
     scale.
     """

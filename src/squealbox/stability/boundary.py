@@ -12,10 +12,11 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.arguments import public
 from squealbox.continuation import StepControl, follow
-from squealbox.family import Bounds
+from squealbox.family import Bounds, DesignOrRecipe
 from squealbox.fe import ReducedBrake
 from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.stability.cells import Crossing, LevelsAtPoints, crossings
@@ -24,7 +25,7 @@ from squealbox.stability.plane_curves import between, onto_side, passed
 from squealbox.stability.scan import coalescence, is_neutral, on_divergence
 from squealbox.stability.sides import lying_on_a_side
 from squealbox.stability.state_matrix import spectrum
-from squealbox.system import InvalidSystem
+from squealbox.system import DesignOrSystem, InvalidSystem
 
 STEPS = tuple(  # ever shorter towards a corner
     StepControl(first=longest / 10.0, smallest=2e-6, largest=longest, tolerance=1e-8, largest_turn=0.2, most_points=60)
@@ -88,7 +89,9 @@ class Boundary(Result):
 
 
 @public()
-def stability_boundary(design: Any, bounds: Mapping[str, Bounds], *, cells: int = 32, time: float = 0.0) -> Boundary:
+def stability_boundary(
+    design: DesignOrSystem, bounds: Mapping[str, Bounds], *, cells: int = 32, time: float = 0.0
+) -> Boundary:
     """Curves on which stability changes, over two parameters.
 
     Parameters
@@ -122,7 +125,7 @@ def stability_boundary(design: Any, bounds: Mapping[str, Bounds], *, cells: int 
 class _Rectangle:
     """Two parameters scaled to the unit square, and the functions on it."""
 
-    def __init__(self, design: Any, bounds: Mapping[str, Bounds], time: float) -> None:
+    def __init__(self, design: DesignOrRecipe, bounds: Mapping[str, Bounds], time: float) -> None:
         self.family = SteadyFamily.within("stability_boundary", design, bounds, count=2, time=time)
         self.low = np.array([low for low, _ in self.family.spans])
         self.width = np.array([high for _, high in self.family.spans]) - self.low
@@ -133,7 +136,7 @@ class _Rectangle:
         self.reference = float(size) if size > 0.0 else 1.0
         self.scale = 1.0
 
-    def level(self, points: Any) -> Any:
+    def level(self, points: ArrayLike) -> Any:
         """Positive where a mode grows, at points (k, 2) of the unit square; outside, the value on its edge."""
         u = np.clip(np.asarray(points), 0.0, 1.0)
         return self._level(self.family.at(*(self.low + self.width * u).T))[0] / self.scale
@@ -148,7 +151,7 @@ class _Rectangle:
         eigenvalues = np.where(idle, -self.reference, eigenvalues)
         return np.where(on_divergence(about), 0.0, np.max(eigenvalues.real, axis=-1)), eigenvalues
 
-    def sample(self, u: Any, v: Any) -> LevelsAtPoints:
+    def sample(self, u: np.ndarray, v: np.ndarray) -> LevelsAtPoints:
         """Level and detectors at points (u, v) of the unit square."""
         about = self.family.at(self.low[0] + self.width[0] * u, self.low[1] + self.width[1] * v)
         level, eigenvalues = self._level(about)
@@ -156,7 +159,7 @@ class _Rectangle:
             self.scale = max(self.scale, float(np.nanmedian(np.abs(level)))) if not self.neutral else 1.0
         return LevelsAtPoints(level, self._detectors(eigenvalues))
 
-    def _detectors(self, eigenvalues: Any) -> Any:
+    def _detectors(self, eigenvalues: np.ndarray) -> Any:
         """Smooth functions of the parameters (2, points) that vanish on the boundary; see the module `cells`."""
         scaled = eigenvalues / self.reference
         values = scaled
@@ -172,12 +175,12 @@ class _Rectangle:
                 product = product * ((a - b) ** 2 if self.neutral else a + b)
         return np.stack([product.real, np.prod(scaled, axis=-1).real])
 
-    def gradient(self, points: Any) -> Any:
+    def gradient(self, points: np.ndarray) -> Any:
         """Gradient of the level at points (k, 2), by central differences in one call."""
         values = self.level((points[:, None, :] + SHIFTS).reshape(-1, 2)).reshape(-1, 4)
         return np.stack([values[:, 0] - values[:, 1], values[:, 2] - values[:, 3]], axis=-1) / (2.0 * SHIFT)
 
-    def stencil(self, point: Any) -> tuple[Any, Any, Any]:
+    def stencil(self, point: np.ndarray) -> tuple[Any, Any, Any]:
         """Detectors (k,) at one point and their gradients (k, 2), in one call, and where the unstable side lies.
 
         That is the gradient of the level, or zero where stability does not change about the point.
@@ -210,7 +213,7 @@ class _Rectangle:
         order = np.lexsort((-np.array([edge.size for edge in edges]), border))
         return [(points[i], gradients[i]) for i in order if known[i]]
 
-    def polished(self, points: Any) -> Any:
+    def polished(self, points: np.ndarray) -> Any:
         """Points moved along the gradient onto the boundary as far as round-off lets them: Newton, then halving."""
         best, size = points.copy(), np.abs(self.level(points))
         gradient = self.gradient(best)
@@ -273,7 +276,7 @@ class _Rectangle:
         )
 
 
-def _traced(rectangle: _Rectangle, start: Any, gradient: Any) -> tuple[Any, Any]:
+def _traced(rectangle: _Rectangle, start: np.ndarray, gradient: np.ndarray) -> tuple[Any, Any]:
     """The whole curve through `start`, with tangents; unstable on the left; first point repeated when closed."""
     heading = np.array([gradient[1], -gradient[0]]) / np.linalg.norm(gradient)
     points, tangents, closed = _walk(rectangle, start, heading, 1.0)
@@ -284,7 +287,9 @@ def _traced(rectangle: _Rectangle, start: Any, gradient: Any) -> tuple[Any, Any]
     return np.clip(np.array(points), 0.0, 1.0), np.array(tangents)
 
 
-def _walk(rectangle: _Rectangle, start: Any, heading: Any, side: float) -> tuple[list[Any], list[Any], bool]:
+def _walk(
+    rectangle: _Rectangle, start: ArrayLike, heading: ArrayLike, side: float
+) -> tuple[list[Any], list[Any], bool]:
     """Points and tangents from `start` along `heading` until the curve closes, ends, or leaves the square.
 
     `side` is 1 with the unstable side on the left, -1 on the right. Where no detector leads on from a corner either,
@@ -325,13 +330,13 @@ def _walk(rectangle: _Rectangle, start: Any, heading: Any, side: float) -> tuple
     return points, tangents, False
 
 
-def _smooth_part(rectangle: _Rectangle, point: Any, along: Any, side: float) -> Iterator[tuple[Any, Any]]:
+def _smooth_part(rectangle: _Rectangle, point: np.ndarray, along: np.ndarray, side: float) -> Iterator[tuple[Any, Any]]:
     """Points after `point` as far as one detector leads along the boundary, with shorter steps towards the corner."""
     values, gradients, _ = rectangle.stencil(point)
     which = int(np.argmin(np.abs(values) / (np.linalg.norm(gradients, axis=-1) + 1e-300)))
     last: dict[tuple[float, float], Any] = {}
 
-    def at(x: Any, p: float) -> Any:
+    def at(x: np.ndarray, p: float) -> Any:
         key = (float(x[0]), float(p))
         if key not in last:
             last.clear()
@@ -364,7 +369,7 @@ def _smooth_part(rectangle: _Rectangle, point: Any, along: Any, side: float) -> 
 
 
 def _around_corner(
-    rectangle: _Rectangle, point: Any, along: Any, side: float, radius: float = CIRCLE
+    rectangle: _Rectangle, point: np.ndarray, along: np.ndarray, side: float, radius: float = CIRCLE
 ) -> tuple[Any, Any] | None:
     """Where the boundary leaves a small circle about a corner, and the direction.
 

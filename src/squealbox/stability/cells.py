@@ -66,7 +66,7 @@ class _Lattice:
         self.level = np.array([])
         self.detectors: Any = None
 
-    def at(self, x: Any, y: Any) -> LevelsAtPoints:
+    def at(self, x: np.ndarray, y: np.ndarray) -> LevelsAtPoints:
         wanted = x * (self.size + 1) + y
         new = np.setdiff1d(wanted, self.keys)
         if new.size:
@@ -81,7 +81,7 @@ class _Lattice:
         return LevelsAtPoints(self.level[place], self.detectors[:, place])
 
 
-def _examine(lattice: _Lattice, x: Any, y: Any, step: int) -> tuple[Any, Any, Any]:
+def _examine(lattice: _Lattice, x: np.ndarray, y: np.ndarray, step: int) -> tuple[Any, Any, Any]:
     """For each cell: may the boundary hide in it, do its corners differ, and is it crossed once and plainly?"""
     half = step // 2
     offsets = [(i * half, j * half) for i in range(3) for j in range(3)]
@@ -103,7 +103,7 @@ def _examine(lattice: _Lattice, x: Any, y: Any, step: int) -> tuple[Any, Any, An
     return hidden & ~crossed, crossed, np.all(plain, axis=0)
 
 
-def _edges(lattice: _Lattice, x: Any, y: Any, step: int) -> list[Crossing]:
+def _edges(lattice: _Lattice, x: np.ndarray, y: np.ndarray, step: int) -> list[Crossing]:
     """The crossed edges of the 3 x 3 nodes of each cell."""
     half = step // 2
     found = []

@@ -17,12 +17,13 @@ from squealbox.stability.family import SteadyFamily
 from squealbox.stability.in_band import largest_in_band
 from squealbox.stability.maps import CHUNK, StabilityMap
 from squealbox.stability.spectra import Engine, largest_growth
+from squealbox.system import DesignOrSystem
 
 NOTHING = 1e-13  # of the spectrum: the growth rate of an undamped mode, told from zero
 
 
 def map_boundary(
-    found: StabilityMap, *, design: Any = None, close: float = 1e-13, engine: Engine = "compiled"
+    found: StabilityMap, *, design: DesignOrSystem | None = None, close: float = 1e-13, engine: Engine = "compiled"
 ) -> Boundary:
     """Curves on which stability changes, read off a map over two parameters and made exact on the lines of its grid.
 
@@ -90,7 +91,9 @@ def _lines(found: StabilityMap) -> list[Any]:
     return [np.asarray(line) for line in lines]
 
 
-def _exact(family: SteadyFamily, axes: list[Any], nodes: Any, close: float, engine: Engine) -> tuple[Any, Any, Any]:
+def _exact(
+    family: SteadyFamily, axes: list[Any], nodes: np.ndarray, close: float, engine: Engine
+) -> tuple[Any, Any, Any]:
     """The points on the boundary for crossings given in indices, with growth rate and angular frequency there."""
     from scipy.optimize import elementwise
 
@@ -103,7 +106,7 @@ def _exact(family: SteadyFamily, axes: list[Any], nodes: Any, close: float, engi
     ]
     first, way = ends[0], ends[1] - ends[0]
 
-    def level(share: Any, i: Any) -> Any:
+    def level(share: np.ndarray, i: np.ndarray) -> Any:
         place = first[:, i] + share * way[:, i]
         growth, omega, growing = _growth(family, place.reshape(2, -1), engine)
         least = -NOTHING * np.maximum(np.hypot(growth, omega), 1.0)
@@ -122,7 +125,7 @@ def _exact(family: SteadyFamily, axes: list[Any], nodes: Any, close: float, engi
     return points, growth, omega
 
 
-def _growth(family: SteadyFamily, place: Any, engine: Engine) -> tuple[Any, Any, Any]:
+def _growth(family: SteadyFamily, place: np.ndarray, engine: Engine) -> tuple[Any, Any, Any]:
     """Largest growth rate, angular frequency and growing modes at points (2, k); NaN where a point is unknown."""
     known = np.all(np.isfinite(place), axis=0)
     if family.band is not None:
@@ -136,7 +139,7 @@ def _growth(family: SteadyFamily, place: Any, engine: Engine) -> tuple[Any, Any,
     return parts[0], parts[1], parts[2]
 
 
-def _renumbered(number: Any, known: Any) -> Any:
+def _renumbered(number: np.ndarray, known: np.ndarray) -> Any:
     """Numbers of curves without gaps; a curve is cut where a point in its middle is unknown."""
     cut = np.cumsum(~known)
     _, fresh = np.unique(np.stack([number, cut])[:, known], axis=1, return_inverse=True)

@@ -15,6 +15,7 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.stability.squeal_indices import squeal_index
 
@@ -26,7 +27,7 @@ COLUMNS = {
 }
 
 
-def as_printed_by(code: str, eigenvalues: Any) -> Mapping[str, Any]:
+def as_printed_by(code: str, eigenvalues: ArrayLike) -> Mapping[str, Any]:
     """The columns in which a finite-element code prints eigenvalues [1/s], by name; see the module for their units.
 
     Parameters
@@ -49,7 +50,7 @@ def as_printed_by(code: str, eigenvalues: Any) -> Mapping[str, Any]:
     return {"real": values.real, "imaginary": values.imag, "frequency": hertz, "damping": squeal_index(values)}
 
 
-def eigenvalues_printed_by(code: str, first: Any, second: Any) -> Any:
+def eigenvalues_printed_by(code: str, first: ArrayLike, second: ArrayLike) -> Any:
     """Eigenvalues [1/s], shape (k,), from the two columns a code prints them in, so that its modes can be compared or
     drawn here.
 

@@ -10,10 +10,12 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.stability import ComplexModes
 from squealbox.stability.eigenvalues import complex_modes
 from squealbox.stability.family import steady_sliding
 from squealbox.stability.in_band import IDLE, eigenvalues_in_band
 from squealbox.stability.mechanisms import mechanism_at
+from squealbox.stability.scan import Scan
 
 CLOSE, ENOUGH = 1e-3, 1e-2  # shares of a step of the scan at which the corrections take over, and at which they end
 APART = 0.02  # of an eigenvalue: so far apart, two are as little alike as two shapes that have nothing in common
@@ -22,7 +24,7 @@ CORRECTIONS = 3  # of a value by the estimate of the reduction's error
 SHORT = 4.0  # of the estimate: where other contacts are open than at the reference it may be a third of what is missed
 
 
-def crossings_between(found: Any, i: int) -> list[dict[str, Any]]:
+def crossings_between(found: Scan, i: int) -> list[dict[str, Any]]:
     """What `onset` tells of every crossing between the values i and i + 1 of a `Scan`, in rising order."""
     low, high = float(found.values[i]), float(found.values[i + 1])
     before, after = (complex_modes(found.family.one(value), found.family.time) for value in (low, high))
@@ -35,7 +37,7 @@ def crossings_between(found: Any, i: int) -> list[dict[str, Any]]:
     return sorted(rows, key=lambda row: row["value"])
 
 
-def _changing(before: Any, after: Any) -> list[tuple[complex, complex]]:
+def _changing(before: ComplexModes, after: ComplexModes) -> list[tuple[complex, complex]]:
     """The pairs of eigenvalues of both ends of which one grows and the other does not.
 
     Two modes are alike by their eigenvalues and by |2 lambda w^H u|, which is 1 for one and the same: a reduced brake's
@@ -51,7 +53,7 @@ def _changing(before: Any, after: Any) -> list[tuple[complex, complex]]:
     return [(a, b) for a, b in every if (a.real > IDLE * abs(a)) != (b.real > IDLE * abs(b))]
 
 
-def _row(found: Any, low: float, high: float, before: complex, after: complex) -> dict[str, Any]:
+def _row(found: Scan, low: float, high: float, before: complex, after: complex) -> dict[str, Any]:
     value, eigenvalue, slope = _followed(found, low, high, before, after)
     there, modes, place, off = _with_error(found, value, eigenvalue)
     for _ in range(CORRECTIONS):
@@ -84,7 +86,7 @@ def _row(found: Any, low: float, high: float, before: complex, after: complex) -
     }
 
 
-def _followed(found: Any, low: float, high: float, before: complex, after: complex) -> tuple[float, complex, float]:
+def _followed(found: Scan, low: float, high: float, before: complex, after: complex) -> tuple[float, complex, float]:
     """Value at which a mode known at both ends neither grows nor decays, its eigenvalue and the slope of its growth."""
     known = [(low, before), (high, after)]
     ends, stays = [(low, before.real), (high, after.real)], -1
@@ -108,11 +110,11 @@ def _followed(found: Any, low: float, high: float, before: complex, after: compl
     return value, known[-1][1], slope if slope * whole > 0.0 else whole
 
 
-def _eigenvalues(found: Any, value: float) -> Any:
+def _eigenvalues(found: Scan, value: float) -> Any:
     return eigenvalues_in_band(found.family.one(value), found.family.time)
 
 
-def _with_error(found: Any, value: float, eigenvalue: complex) -> tuple[Any, Any, int, complex | None]:
+def _with_error(found: Scan, value: float, eigenvalue: complex) -> tuple[Any, Any, int, complex | None]:
     """The reduced brake at a value, its modes, the one nearest to an eigenvalue, and what this lacks where known."""
     there = found.family.one(value)
     modes = complex_modes(there, found.family.time)

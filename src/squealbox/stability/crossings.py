@@ -67,14 +67,14 @@ def _shape(family: SteadyFamily, low: float) -> tuple[int, ...]:
     return shape
 
 
-def _growth(family: SteadyFamily, rows: int, sample: Any) -> Callable[[Any], Any]:
+def _growth(family: SteadyFamily, rows: int, sample: np.ndarray) -> Callable[[Any], Any]:
     """The function that turns positive where stability is lost: of values (..., rows), one for each system.
 
     It is the largest growth rate by the quickest road, unless modes without damping call for another function.
     """
     smooth = first_function([family.at(np.full(rows, value)) for value in sample])
 
-    def growth(values: Any) -> Any:
+    def growth(values: np.ndarray) -> Any:
         steady = family.at(values)
         if smooth is not None:
             return smooth(steady)
@@ -83,7 +83,7 @@ def _growth(family: SteadyFamily, rows: int, sample: Any) -> Callable[[Any], Any
     return growth
 
 
-def _along(growth: Callable[[Any], Any], values: Any, rows: int) -> Iterator[tuple[float, Any]]:
+def _along(growth: Callable[[Any], Any], values: np.ndarray, rows: int) -> Iterator[tuple[float, Any]]:
     """Each value with what `growth` gives there, several values in one batched call."""
     together = max(BLOCK // rows, 1)
     for start in range(0, values.size, together):
@@ -91,11 +91,11 @@ def _along(growth: Callable[[Any], Any], values: Any, rows: int) -> Iterator[tup
         yield from zip(some, growth(np.repeat(some[:, None], rows, axis=1)), strict=True)
 
 
-def _roots(growth: Callable[[Any], Any], below: Any, above: Any, places: Any) -> Any:
+def _roots(growth: Callable[[Any], Any], below: np.ndarray, above: np.ndarray, places: np.ndarray) -> Any:
     """Chandrupatla's method on all brackets together; systems that are done are computed along."""
     from scipy.optimize import elementwise
 
-    def at(values: Any, rows: Any) -> Any:
+    def at(values: np.ndarray, rows: np.ndarray) -> Any:
         every = np.array(below)
         every[rows.astype(int)] = values
         return growth(every)[rows.astype(int)]

@@ -13,6 +13,7 @@ so R' A R has the other eigenvalues; repeated until it is regular, each zero is 
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.stability.massless import reduced
 from squealbox.stability.ordering import halves, spectrum_order
@@ -22,7 +23,7 @@ LARGEST = 1e9  # entry of A, with time in units of the typical frequency, above 
 ZERO = 1e-12  # singular values below this share of 1 (all matrices are scaled to 1) count as zero
 
 
-def special_modes(mass: Any, damping: Any, stiffness: Any) -> tuple[Any, Any, Any, Any] | None:
+def special_modes(mass: np.ndarray, damping: np.ndarray, stiffness: np.ndarray) -> tuple[Any, Any, Any, Any] | None:
     """Eigenvalues (2n,), right and left modes (n, 2n) and condition numbers (2n,) of one system; NaN = at infinity.
 
     The first n hold Im >= 0, as in `ComplexModes`. None where every number is an eigenvalue.
@@ -51,14 +52,14 @@ def special_modes(mass: Any, damping: Any, stiffness: Any) -> tuple[Any, Any, An
     return out, rights, duals, conditions
 
 
-def vibrating(eigenvalues: Any, floating: Any) -> Any:
+def vibrating(eigenvalues: np.ndarray, floating: ArrayLike) -> Any:
     """The largest growth rate (...) beside the zeros of rigid-body motion and what is at infinity; -inf without one."""
     rigid = (eigenvalues == 0.0) & (np.asarray(floating)[..., None] > 0)
     growth = np.real(eigenvalues)
     return np.max(np.where(rigid | np.isnan(growth), -np.inf, growth), axis=-1, initial=-np.inf)
 
 
-def uncertain(eigenvalues: Any, condition: Any, scale: Any) -> Any:
+def uncertain(eigenvalues: np.ndarray, condition: np.ndarray, scale: np.ndarray) -> Any:
     """Round-off of an eigenvalue over `scale`: of a slow pair beside fast ones it is its condition that counts."""
     slow = np.abs(eigenvalues) < SLOW * scale
     with np.errstate(invalid="ignore"):
@@ -66,7 +67,7 @@ def uncertain(eigenvalues: Any, condition: Any, scale: Any) -> Any:
     return np.where(slow & np.isfinite(error), error, 0.0)
 
 
-def _rate(mass: Any, damping: Any, stiffness: Any) -> float:
+def _rate(mass: np.ndarray, damping: np.ndarray, stiffness: np.ndarray) -> float:
     """A typical angular frequency [rad/s]: a heavy free body must not set the rate of a light spring or damper."""
     rows = m, c, k = [np.max(np.abs(part), axis=1, initial=0.0) for part in (mass, damping, stiffness)]
     other = k if np.any(k > 0.0) else c
@@ -80,7 +81,9 @@ def _rate(mass: Any, damping: Any, stiffness: Any) -> float:
     return float(rate) if np.isfinite(rate) and rate > 0.0 else 1.0
 
 
-def _states(mass: Any, damping: Any, stiffness: Any, rate: float) -> tuple[Any, Any, Any, Any] | None:
+def _states(
+    mass: np.ndarray, damping: np.ndarray, stiffness: np.ndarray, rate: float
+) -> tuple[Any, Any, Any, Any] | None:
     """Levels (n,), scaled M, C and K, what the states left stand for, and the matrix A of x' = A x in them.
 
     None where every number is an eigenvalue.
@@ -95,7 +98,7 @@ def _states(mass: Any, damping: Any, stiffness: Any, rate: float) -> tuple[Any, 
     return level, (m, c, k), embedding, np.linalg.solve(left, right)
 
 
-def _missed(matrix: Any) -> float:
+def _missed(matrix: np.ndarray) -> float:
     """By how much time has to be scaled anew: a force through a row without mass is faster than any spring and mass.
 
     Ranks are decided by the largest entry: `ZERO` times it would count motions at the typical frequency as none.
@@ -105,14 +108,14 @@ def _missed(matrix: Any) -> float:
     return float(np.max(np.abs(np.linalg.eigvals(matrix)), initial=1.0))
 
 
-def _levels(mass: Any, damping: Any, stiffness: Any, rate: float) -> Any:
+def _levels(mass: np.ndarray, damping: np.ndarray, stiffness: np.ndarray, rate: float) -> Any:
     """Factors (n,) that bring each freedom to one unit."""
     size = np.maximum(np.max(np.abs(stiffness), axis=1), rate**2 * np.max(np.abs(mass), axis=1))
     size = np.maximum(size, rate * np.max(np.abs(damping), axis=1))
     return 1.0 / np.sqrt(np.where(size > 0.0, size, 1.0))
 
 
-def _held(stiffness: Any) -> bool:
+def _held(stiffness: np.ndarray) -> bool:
     """Whether springs hold every motion: then no eigenvalue is zero, however heavily something is damped."""
     rows = np.max(np.abs(stiffness), axis=1, keepdims=True, initial=0.0)
     if not np.all(rows > 0.0):
@@ -120,7 +123,7 @@ def _held(stiffness: Any) -> bool:
     return bool(np.linalg.svd(stiffness / rows, compute_uv=False)[-1] > ZERO)
 
 
-def _eigen(matrix: Any, held: bool) -> tuple[Any, Any]:
+def _eigen(matrix: np.ndarray, held: bool) -> tuple[Any, Any]:
     """Eigenvalues and vectors; zeros, which what is held has none of, exact, with a basis of their invariant space."""
     size = len(matrix)
     basis, zeros, rest = np.eye(size), 0, matrix
@@ -145,7 +148,7 @@ def _eigen(matrix: Any, held: bool) -> tuple[Any, Any]:
     return np.concatenate([np.zeros(zeros), values]).astype(complex), states
 
 
-def _lefts(m: Any, c: Any, k: Any, values: Any, shapes: Any) -> tuple[Any, Any]:
+def _lefts(m: np.ndarray, c: np.ndarray, k: np.ndarray, values: np.ndarray, shapes: np.ndarray) -> tuple[Any, Any]:
     """Left modes with w^H (2 lambda M + C) u = 1 where that is not zero, and condition numbers."""
     lefts, condition = np.zeros(shapes.shape, dtype=complex), np.full(len(values), np.inf)
     zeros = 0
@@ -165,7 +168,7 @@ def _lefts(m: Any, c: Any, k: Any, values: Any, shapes: Any) -> tuple[Any, Any]:
     return lefts, condition
 
 
-def _places(values: Any, size: int) -> Any:
+def _places(values: np.ndarray, size: int) -> Any:
     """Where each eigenvalue goes: Im >= 0 ascending in the first half, the rest likewise in the second."""
     order = spectrum_order(values)
     side = np.where(values.imag == 0.0, halves(values[None])[0], values.imag < 0.0).astype(bool)

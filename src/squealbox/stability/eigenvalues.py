@@ -5,6 +5,7 @@ solved as the eigenproblem of the (2n, 2n) state matrix [[0, I], [-M^-1 K, -M^-1
 angular frequency; time enters as exp(lambda t), so a positive real part grows.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
@@ -19,7 +20,7 @@ from squealbox.stability.deflation import special_modes, uncertain, vibrating
 from squealbox.stability.mode import Mode, OneEigenvalue, damping_ratio
 from squealbox.stability.ordering import spectrum_order
 from squealbox.stability.state_matrix import special_entries, stand_in, state_matrix
-from squealbox.system import Linearised, as_system, linearise
+from squealbox.system import DesignOrSystem, Linearised, as_system, linearise
 
 MARGINAL = 1e-12  # growth below this share of the largest |lambda| is round-off, not growth
 __all__ = ["ComplexModes", "Mode", "OneEigenvalue", "complex_modes", "damping_ratio", "modes_of"]
@@ -188,7 +189,9 @@ class ComplexModes(Result):
 
 @batched
 @public()
-def complex_modes(design_or_system: Any, time: float = 0.0, *, band: Any = None, **how: Any) -> ComplexModes:
+def complex_modes(
+    design_or_system: DesignOrSystem, time: float = 0.0, *, band: tuple[float, float] | None = None, **how: Any
+) -> ComplexModes:
     """Eigenvalues and modes of (lambda^2 M + lambda C_eff + K_eff) u = 0 about steady sliding at `time` [s].
 
     Parameters
@@ -235,7 +238,7 @@ def complex_modes(design_or_system: Any, time: float = 0.0, *, band: Any = None,
     return modes if band is None else modes.within(band)
 
 
-def _of_reduced(design: Any, time: float, band: Any) -> ComplexModes | None:
+def _of_reduced(design: DesignOrSystem, time: float, band: tuple[float, float] | None) -> ComplexModes | None:
     """The modes of a reduced brake in its band, which it knows how to find at a small part of the price."""
     if not isinstance(design, ReducedBrake):
         return None
@@ -266,7 +269,7 @@ def _stacked(every: list[ComplexModes], design: Any) -> ComplexModes:
     """Modes of several brakes as one result with their leading axes, filled up by NaN where one has fewer."""
     most = max(one.eigenvalues.shape[-1] // 2 for one in every)
 
-    def joined(name: str, fill: Any = None) -> Any:
+    def joined(name: str, fill: float | None = None) -> Any:
         parts = [np.asarray(getattr(one, name)) for one in every]
         if fill is not None:  # both halves are filled up at their ends
             halves = [np.split(part, 2, axis=-1) for part in parts]
@@ -288,7 +291,9 @@ def _stacked(every: list[ComplexModes], design: Any) -> ComplexModes:
     )
 
 
-def modes_of(about: Linearised, inputs: Any = None, contacts: tuple[str, ...] = ()) -> ComplexModes:
+def modes_of(
+    about: Linearised, inputs: Mapping[str, Any] | None = None, contacts: tuple[str, ...] = ()
+) -> ComplexModes:
     """The modes of linearised matrices; see :func:`complex_modes`."""
     matrix, rate, usable, outcome = state_matrix(about)
     special = special_entries(about)
@@ -297,7 +302,7 @@ def modes_of(about: Linearised, inputs: Any = None, contacts: tuple[str, ...] = 
     scaled = np.take_along_axis(scaled.astype(complex), order, axis=-1)
     states = np.take_along_axis(states.astype(complex), order[..., None, :], axis=-1)
     eigenvalues = scaled * rate[..., None]
-    right, left, condition = _modes(about, eigenvalues, states, usable)
+    right, left, condition = _modes(about, eigenvalues, states, np.asarray(usable))
     eigenvalues, right, left, condition, usable = map(np.array, (eigenvalues, right, left, condition, usable))
     for at in map(tuple, np.argwhere(special)):
         found = special_modes(about.M[at], about.C[at], about.K[at])
@@ -321,7 +326,7 @@ def modes_of(about: Linearised, inputs: Any = None, contacts: tuple[str, ...] = 
     )
 
 
-def _modes(about: Linearised, eigenvalues: Any, states: Any, usable: Any) -> tuple[Any, Any, Any]:
+def _modes(about: Linearised, eigenvalues: np.ndarray, states: np.ndarray, usable: np.ndarray) -> tuple[Any, Any, Any]:
     size = about.M.shape[-1]
     inverse, invertible = _inverse(states)
     with np.errstate(all="ignore"):
@@ -342,7 +347,7 @@ def _modes(about: Linearised, eigenvalues: Any, states: Any, usable: Any) -> tup
     return right, np.where(np.isfinite(scaled), scaled, left), condition
 
 
-def _inverse(states: Any) -> tuple[Any, Any]:
+def _inverse(states: np.ndarray) -> tuple[Any, Any]:
     largest = 0.01 / np.finfo(float).eps
     with np.errstate(all="ignore"):
         condition = np.asarray(np.linalg.cond(states, 1))  # an inverse; singular values of 480 states take twenty
@@ -354,7 +359,7 @@ def _inverse(states: Any) -> tuple[Any, Any]:
     return np.linalg.inv(safe), invertible
 
 
-def _left_null(mass: Any, damping: Any, stiffness: Any, eigenvalues: Any) -> Any:
+def _left_null(mass: np.ndarray, damping: np.ndarray, stiffness: np.ndarray, eigenvalues: np.ndarray) -> Any:
     """Left null vectors of lambda^2 M + lambda C + K by singular values: exact even where modes have merged."""
     value = eigenvalues[..., None, None]
     dynamic = value**2 * mass[..., None, :, :] + value * damping[..., None, :, :] + stiffness[..., None, :, :]
@@ -362,7 +367,7 @@ def _left_null(mass: Any, damping: Any, stiffness: Any, eigenvalues: Any) -> Any
     return np.swapaxes(vectors[..., -1], -1, -2)
 
 
-def _phased(shapes: Any) -> Any:
+def _phased(shapes: np.ndarray) -> Any:
     """Shapes of length 1 whose first largest part is real and positive."""
     size = np.abs(shapes)
     first = np.argmax(size >= (1.0 - 1e-6) * np.max(size, axis=-2, keepdims=True), axis=-2)

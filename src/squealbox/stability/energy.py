@@ -27,7 +27,7 @@ from squealbox.memory_rows import no_memory
 from squealbox.result import Array, Result, quantity
 from squealbox.stability.eigenvalues import Mode, complex_modes, modes_of
 from squealbox.stability.family import across_dampers, steady_sliding
-from squealbox.system import System, as_system, linearise
+from squealbox.system import DesignOrSystem, System, as_system, linearise
 from squealbox.words import growing
 
 MOST_DAMPERS = 12  # named one by one; the damping of a larger structure is given by degree of freedom
@@ -103,7 +103,7 @@ class ModeEnergy(Result):
         """The same with contacts summed by their name without its number, and all damping in one; no phases."""
         rows = contact_groups(self.contacts)
 
-        def summed(values: Any) -> Any:
+        def summed(values: np.ndarray) -> Any:
             return np.array([np.sum(values[each]) for each in rows.values()])
 
         arrays: dict[str, Any] = {name: summed(getattr(self, name)) for name in ("circulation", "slope", "across")}
@@ -150,7 +150,7 @@ def contact_groups(names: Sequence[str]) -> dict[str, Any]:
 
 
 @public()
-def mode_energy(design_or_system: Any, mode: Mode | int | None = None, time: float = 0.0) -> ModeEnergy:
+def mode_energy(design_or_system: DesignOrSystem, mode: Mode | int | None = None, time: float = 0.0) -> ModeEnergy:
     """Energies and powers of one mode of one system.
 
     Parameters
@@ -252,7 +252,7 @@ def sparse_energy(system: System, mode: Mode | int | None, time: float) -> ModeE
     )
 
 
-def _dampers(damping: Any, velocity: Any, dofs: tuple[str, ...]) -> tuple[tuple[str, ...], Any]:
+def _dampers(damping: np.ndarray, velocity: np.ndarray, dofs: tuple[str, ...]) -> tuple[tuple[str, ...], Any]:
     """Names and mean powers [W] of the dampers that C is made of: to ground, and between two degrees of freedom."""
     symmetric = 0.5 * (damping + damping.T)  # the skew part does no work
     rest = 1e-14 * np.max(np.abs(symmetric))

@@ -11,7 +11,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from squealbox.arguments import public
-from squealbox.family import Bounds, Family, Varied
+from squealbox.family import Bounds, DesignOrRecipe, Family, Varied
 from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.stability.family import SteadyFamily
 from squealbox.stability.onset import critical_value
@@ -39,7 +39,7 @@ class ExceptionalPoints(Result):
 
 @public()
 def exceptional_points(
-    design: Any, bounds: Mapping[str, Bounds], *, points: int = 41, time: float = 0.0
+    design: DesignOrRecipe, bounds: Mapping[str, Bounds], *, points: int = 41, time: float = 0.0
 ) -> ExceptionalPoints:
     """Points of two parameters where two modes merge: least distances on a grid, refined by Newton's method.
 
@@ -81,13 +81,13 @@ def exceptional_points(
     )
 
 
-def _squared_gaps(values: Any) -> tuple[Any, list[tuple[int, int]]]:
+def _squared_gaps(values: np.ndarray) -> tuple[Any, list[tuple[int, int]]]:
     half = values.shape[-1] // 2
     pairs = [(i, j) for i in range(half) for j in range(i)]
     return np.stack([(values[..., i] - values[..., j]) ** 2 for i, j in pairs], axis=-1), pairs
 
 
-def _local_minima(size: Any) -> Any:
+def _local_minima(size: np.ndarray) -> Any:
     padded = np.pad(np.nan_to_num(size, nan=np.inf), 1, constant_values=np.inf)
     middle = padded[1:-1, 1:-1]
     least = np.isfinite(middle)
@@ -96,7 +96,9 @@ def _local_minima(size: Any) -> Any:
     return least
 
 
-def _newton(family: SteadyFamily, low: Any, width: Any, point: Any, pair: Any) -> tuple[Any, complex, float] | None:
+def _newton(
+    family: SteadyFamily, low: np.ndarray, width: np.ndarray, point: np.ndarray, pair: np.ndarray
+) -> tuple[Any, complex, float] | None:
     """Newton's method on (lambda_i - lambda_j)^2 = 0 in two real unknowns."""
     step = 1e-5
     shifts = step * np.array([[0.0, 0.0], [1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]])

@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from squealbox.family import Family
+from squealbox.family import DesignOrRecipe, Family
 from squealbox.fe import ReducedBrake
 from squealbox.parameters import ParameterError
-from squealbox.system import Equilibrium, InvalidSystem, Linearised, System, as_system, linearise
+from squealbox.system import DesignOrSystem, Equilibrium, InvalidSystem, Linearised, System, as_system, linearise
 
 
 @dataclass(frozen=True)
@@ -24,7 +24,7 @@ class Steady(Linearised):
     elastic: Any
 
 
-def steady_sliding(design_or_system: Any, time: float = 0.0) -> Steady:
+def steady_sliding(design_or_system: DesignOrSystem, time: float = 0.0) -> Steady:
     """M, C_eff, K_eff and the structure's own C about steady sliding at `time` [s]."""
     quick = design_or_system.parts() if isinstance(design_or_system, ReducedBrake) else None
     if quick is not None:
@@ -76,7 +76,7 @@ class SteadyFamily(Family):
     """A family linearised about steady sliding; `time` [s] is the instant of schedules."""
 
     def __init__(
-        self, design: Any, parameters: Iterable[str], spans: Iterable[Any] = (), time: float = 0.0
+        self, design: DesignOrRecipe, parameters: Iterable[str], spans: Iterable[Any] = (), time: float = 0.0
     ) -> None:  # fmt: skip
         super().__init__(design, parameters, spans)
         self.time = time
@@ -119,7 +119,7 @@ _STATE = {"q": 1, "normal_force": 1, "sliding_speed": 1, "friction": 1, "exists"
 _MATRICES = {"M": 2, "C": 2, "K": 2, "structural": 2, "elastic": 2}
 
 
-def _tail(array: Any, rank: int) -> tuple[int, ...]:
+def _tail(array: bool | np.bool_ | np.ndarray, rank: int) -> tuple[int, ...]:
     return np.shape(array)[np.ndim(array) - rank :]
 
 

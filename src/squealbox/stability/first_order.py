@@ -13,13 +13,15 @@ from typing import Any
 import numpy as np
 
 
-def first_order_rows(mass: Any) -> Any:
+def first_order_rows(mass: np.ndarray) -> Any:
     """True for the degrees of freedom without mass in every entry, shape (n,)."""
     heavy = np.any(mass != 0.0, axis=-1)
     return ~np.any(heavy.reshape(-1, heavy.shape[-1]), axis=0)
 
 
-def first_order_matrix(mass: Any, damping: Any, stiffness: Any, rows: Any) -> tuple[Any, Any, Any]:
+def first_order_matrix(
+    mass: np.ndarray, damping: np.ndarray, stiffness: np.ndarray, rows: np.ndarray
+) -> tuple[Any, Any, Any]:
     """The state matrix over its time scale, that scale (...) [1/s], and where the rows have a damper of their own."""
     n = len(rows)
     z, m = np.flatnonzero(rows), np.flatnonzero(~rows)
@@ -50,7 +52,7 @@ def first_order_matrix(mass: Any, damping: Any, stiffness: Any, rows: Any) -> tu
     return matrix, rate, regular
 
 
-def first_order_spectra(mass: Any, damping: Any, stiffness: Any) -> tuple[Any, Any]:
+def first_order_spectra(mass: np.ndarray, damping: np.ndarray, stiffness: np.ndarray) -> tuple[Any, Any]:
     """Eigenvalues (k, 2n) of k systems, NaN for those at infinity, and which of the systems are answered, (k,).
 
     Answered are those in which each row without mass has a damper of its own, and all share which rows these are.

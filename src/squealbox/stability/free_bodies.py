@@ -15,7 +15,9 @@ import numpy as np
 FELT = 1e-13  # share of the largest entry below which a motion is not felt
 
 
-def free_body_spectra(mass: Any, damping: Any, stiffness: Any, floating: Any) -> tuple[Any, Any]:
+def free_body_spectra(
+    mass: np.ndarray, damping: np.ndarray, stiffness: np.ndarray, floating: np.ndarray
+) -> tuple[Any, Any]:
     """Eigenvalues (k, 2n) of k systems in no order, and which of the systems are answered, (k,).
 
     Answered are those in which the common motions of the first system, `floating[0]` of them, are all there are.
@@ -47,7 +49,7 @@ def free_body_spectra(mass: Any, damping: Any, stiffness: Any, floating: Any) ->
     return values, unfelt
 
 
-def _largest(matrix: Any) -> Any:
+def _largest(matrix: np.ndarray) -> Any:
     """The largest entry, with axes to divide by; 1 where there is none."""
     size = np.max(np.abs(matrix), axis=(-1, -2), keepdims=True)
     return np.where(size > 0.0, size, 1.0)

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from squealbox.stability.family import steady_sliding
-from squealbox.system import Linearised
+from squealbox.system import DesignOrSystem, Linearised
 
 
 def characteristic_polynomial(about: Linearised) -> Any:
@@ -24,7 +24,7 @@ def characteristic_polynomial(about: Linearised) -> Any:
     return np.stack(np.broadcast_arrays(a4, a3, a2, a1, _mixed(k, k)), axis=-1)
 
 
-def hurwitz_determinants(coefficients: Any) -> Any:
+def hurwitz_determinants(coefficients: np.ndarray) -> Any:
     """The quantities a3, a1, a0 and a1 (a3 a2 - a1) - a3^2 a0 of the monic quartic, (..., 4).
 
     All are positive just when every real part is negative. The last vanishes where a pair is on the imaginary axis, or
@@ -35,7 +35,7 @@ def hurwitz_determinants(coefficients: Any) -> Any:
     return np.stack([a3, a1, a0, a1 * (a3 * a2 - a1) - a3**2 * a0], axis=-1)
 
 
-def routh_hurwitz(design_or_system: Any, time: float = 0.0) -> Any:
+def routh_hurwitz(design_or_system: DesignOrSystem, time: float = 0.0) -> Any:
     """True where steady sliding of two degrees of freedom is asymptotically stable, (...); False without equilibrium.
 
     `time` [s]: instant at which schedules are taken.
@@ -60,5 +60,5 @@ def undamped_squares(about: Linearised) -> tuple[Any, Any]:
     return far / a, near
 
 
-def _mixed(a: Any, b: Any) -> Any:
+def _mixed(a: np.ndarray, b: np.ndarray) -> Any:
     return a[..., 0, 0] * b[..., 1, 1] - a[..., 0, 1] * b[..., 1, 0]

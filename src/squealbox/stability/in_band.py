@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.fe import ReducedBrake, Small, condensed, vibrating
 from squealbox.stability.eigenvalues import complex_modes
@@ -26,7 +27,7 @@ def eigenvalues_along(family: SteadyFamily, *values: Any) -> Iterator[Any]:
         yield eigenvalues_in_band(family.one(*(float(x) for x in point)), family.time)
 
 
-def eigenvalues_in_band(design: Any, time: float) -> Any:
+def eigenvalues_in_band(design: ReducedBrake, time: float) -> Any:
     """The same of one brake, good to 1e-8."""
     found = design.band_modes(None, time, rough=True)
     if found is not None:
@@ -35,20 +36,20 @@ def eigenvalues_in_band(design: Any, time: float) -> Any:
     return modes.eigenvalues[: len(modes.eigenvalues) // 2] if modes.exists else np.array([complex(np.nan)])
 
 
-def growth_in_band(family: SteadyFamily, values: Any) -> Any:
+def growth_in_band(family: SteadyFamily, values: ArrayLike) -> Any:
     """Growth rates less round-off [1/s] (values, modes), the largest first; NaN where there is no mode more."""
     rows = [-np.sort(-(found.real - IDLE * np.abs(found))) for found in eigenvalues_along(family, values)]
     most = max((len(row) for row in rows), default=0)
     return np.stack([np.pad(row, (0, most - len(row)), constant_values=np.nan) for row in rows])
 
 
-def largest_in_band(family: SteadyFamily, *values: Any) -> tuple[Any, Any, Any]:
+def largest_in_band(family: SteadyFamily, *values: ArrayLike) -> tuple[Any, Any, Any]:
     """Largest growth rate [1/s], angular frequency of its mode [rad/s] and growing modes, (k,); as `largest_growth`."""
     growth, omega, growing = np.array([worst_in_band(found) for found in eigenvalues_along(family, *values)]).T
     return growth, omega, growing.astype(np.int64)
 
 
-def worst_in_band(eigenvalues: Any) -> tuple[float, float, int]:
+def worst_in_band(eigenvalues: np.ndarray) -> tuple[float, float, int]:
     """The same of the eigenvalues of one brake; NaN, NaN and 0 without a mode."""
     known = eigenvalues[np.isfinite(eigenvalues)]
     if not len(known):

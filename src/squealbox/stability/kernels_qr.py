@@ -7,14 +7,16 @@ nothing.
 
 from typing import Any
 
-from squealbox.compiled import inverse_power, larger, largest, load, root, select, signed, some, splat, store
+import numpy as np
+
+from squealbox.compiled import Lanes, inverse_power, larger, largest, load, root, select, signed, some, splat, store
 
 EPS = 2.220446049250313e-16
 TINY = 1e-290  # of a matrix whose largest entry is about 1: nothing
 SWEEPS = 60  # QR sweeps on one window before the matrix is given up
 
 
-def windows(h: Any, n: int, top: int) -> Any:
+def windows(h: np.ndarray, n: int, top: int) -> Any:
     """Set negligible subdiagonals to zero; last and first row of each matrix's lowest window of three rows or more.
 
     -1 and 0 where there is none. Negligible is what LAPACK's lahqr calls so: |h(i, i-1)| below round-off of its two
@@ -43,7 +45,7 @@ def windows(h: Any, n: int, top: int) -> Any:
     return select(found, size, last), low
 
 
-def shifts(h: Any, n: int, top: int, bottom: int, last: Any, low: Any, sweeps: Any) -> Any:
+def shifts(h: np.ndarray, n: int, top: int, bottom: int, last: Lanes, low: Lanes, sweeps: Lanes) -> Any:
     """First column (p, q, r) of (H - s1)(H - s2), both shifts the eigenvalues of the window's last 2 x 2 block.
 
     After each ten sweeps on one window LAPACK's exceptional shift is taken instead.
@@ -73,8 +75,14 @@ def shifts(h: Any, n: int, top: int, bottom: int, last: Any, low: Any, sweeps: A
     return (a - x) * (a - y) - w + b * c, c * (a + d - x - y), c * e
 
 
-def sweep(h: Any, n: int, top: int, bottom: int, last: Any, low: Any, p: Any, q: Any, r: Any) -> None:
-    """One implicit double-shift QR sweep of every matrix over its own window, inside rows bottom to top."""
+def sweep(
+    h: np.ndarray, n: int, top: int, bottom: int, last: Lanes, low: Lanes, column: tuple[Lanes, Lanes, Lanes]
+) -> None:
+    """One implicit double-shift QR sweep of every matrix over its own window, inside rows bottom to top.
+
+    column : the first one of both shifts, as `shifts` gives it
+    """
+    p, q, r = column
     zero, one = splat(0.0), splat(1.0)
     row = splat(float(bottom))
     for k in range(bottom, top):
@@ -101,9 +109,9 @@ def sweep(h: Any, n: int, top: int, bottom: int, last: Any, low: Any, p: Any, q:
         last_row = min(top, k + 3)
         if k < top - 1:
             for j in range(k, top + 1):
-                _turn_three(h, k * n + j, n, f, g, s, u, q, r)
+                _turn_three(h, k * n + j, n, (f, g, s), (u, q, r))
             for i in range(last_row, bottom - 1, -1):  # what the next reflection waits for comes first
-                _turn_three(h, i * n + k, 1, f, g, s, u, q, r)
+                _turn_three(h, i * n + k, 1, (f, g, s), (u, q, r))
         else:
             for j in range(k, top + 1):
                 _turn_two(h, k * n + j, n, f, g, u, q)
@@ -112,22 +120,26 @@ def sweep(h: Any, n: int, top: int, bottom: int, last: Any, low: Any, p: Any, q:
         row = row + one
 
 
-def _turn_three(h: Any, place: int, apart: int, f: Any, g: Any, s: Any, u: Any, q: Any, r: Any) -> None:
+def _turn_three(
+    h: np.ndarray, place: int, apart: int, weighted: tuple[Lanes, Lanes, Lanes], normal: tuple[Lanes, Lanes, Lanes]
+) -> None:
     x, y, z = load(h, place), load(h, place + apart), load(h, place + 2 * apart)
+    f, g, s = weighted
+    u, q, r = normal
     t = f * x + g * y + s * z
     store(h, place, x - t * u)
     store(h, place + apart, y - t * q)
     store(h, place + 2 * apart, z - t * r)
 
 
-def _turn_two(h: Any, place: int, apart: int, f: Any, g: Any, u: Any, q: Any) -> None:
+def _turn_two(h: np.ndarray, place: int, apart: int, f: Lanes, g: Lanes, u: Lanes, q: Lanes) -> None:
     x, y = load(h, place), load(h, place + apart)
     t = f * x + g * y
     store(h, place, x - t * u)
     store(h, place + apart, y - t * q)
 
 
-def iterate(h: Any, n: int) -> Any:
+def iterate(h: np.ndarray, n: int) -> Any:
     """QR sweeps until every matrix has blocks of one and two rows only; returns 1 where that did not come about."""
     zero, one, none = splat(0.0), splat(1.0), splat(-1.0)
     lost, sweeps, last = zero, zero, splat(float(n))
@@ -143,5 +155,4 @@ def iterate(h: Any, n: int) -> Any:
         if top < 0:
             return lost
         bottom = -int(largest(select(last < zero, splat(-float(n)), -low)))
-        p, q, r = shifts(h, n, top, bottom, last, low, sweeps)
-        sweep(h, n, top, bottom, last, low, p, q, r)
+        sweep(h, n, top, bottom, last, low, shifts(h, n, top, bottom, last, low, sweeps))

@@ -11,8 +11,11 @@ Plain functions for `compiled`, which `spectra` has translated.
 import math
 from typing import Any
 
+import numpy as np
+
 from squealbox.compiled import (
     LANES,
+    Lanes,
     inverse_power,
     larger,
     load,
@@ -27,7 +30,7 @@ from squealbox.compiled import (
 from squealbox.stability.kernels_qr import TINY, iterate
 
 
-def scale(h: Any, n: int) -> Any:
+def scale(h: np.ndarray, n: int) -> Any:
     """Scale every matrix by a power of two to a largest entry in [1, 2); returns it, NaN for a matrix not finite."""
     total, largest_entry = splat(0.0), splat(0.0)
     for place in range(n * n):
@@ -41,7 +44,7 @@ def scale(h: Any, n: int) -> Any:
     return select(usual, factor, splat(math.nan))
 
 
-def balance(h: Any, n: int) -> Any:
+def balance(h: np.ndarray, n: int) -> Any:
     """Scale rows and columns by powers of two until their norms agree; returns 1 where a row or column stands alone.
 
     LAPACK moves such rows out of the way first, and so gets their eigenvalues exactly. That is left to LAPACK.
@@ -74,7 +77,7 @@ def balance(h: Any, n: int) -> Any:
     return alone
 
 
-def hessenberg(h: Any, n: int, v: Any) -> None:
+def hessenberg(h: np.ndarray, n: int, v: np.ndarray) -> None:
     """Reduce to Hessenberg form by Householder reflections I - w v v'; v is room for one vector."""
     zero, one = splat(0.0), splat(1.0)
     for m in range(n - 2):
@@ -97,7 +100,7 @@ def hessenberg(h: Any, n: int, v: Any) -> None:
             _reflect(h, i * n + m + 1, 1, v, weight, size)
 
 
-def _reflect(h: Any, start: int, stride: int, v: Any, weight: Any, size: int) -> None:
+def _reflect(h: np.ndarray, start: int, stride: int, v: np.ndarray, weight: Lanes, size: int) -> None:
     """x -= w (v.x) v for the entries x of h at start, start + stride, ..."""
     product = splat(0.0)
     for i in range(size):
@@ -107,7 +110,7 @@ def _reflect(h: Any, start: int, stride: int, v: Any, weight: Any, size: int) ->
         store(h, start + i * stride, load(h, start + i * stride) - product * load(v, i))
 
 
-def read(h: Any, n: int, real: Any, imaginary: Any) -> None:
+def read(h: np.ndarray, n: int, real: np.ndarray, imaginary: np.ndarray) -> None:
     """The eigenvalues of the blocks on the diagonal."""
     zero, one, half = splat(0.0), splat(1.0), splat(0.5)
     store(real, 0, load(h, 0))
@@ -131,7 +134,9 @@ def read(h: Any, n: int, real: Any, imaginary: Any) -> None:
         store(imaginary, i, select(pair, -omega, zero))
 
 
-def spectra(matrices: Any, values: Any, h: Any, v: Any, real: Any, imaginary: Any) -> None:
+def spectra(
+    matrices: np.ndarray, values: np.ndarray, h: np.ndarray, v: np.ndarray, real: np.ndarray, imaginary: np.ndarray
+) -> None:
     """Eigenvalues of matrices (count, n, n) into values (count, n, 2), real and imaginary; NaN where left to LAPACK.
 
     h is room for n n packed numbers, v, real and imaginary for n each. Left are matrices that are not finite, have a

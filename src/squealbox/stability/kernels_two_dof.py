@@ -9,13 +9,15 @@ translated.
 
 from typing import Any
 
-from squealbox.compiled import LANES, columns, larger, root, select, signed, smaller, splat, store, word
+import numpy as np
+
+from squealbox.compiled import LANES, Lanes, columns, larger, root, select, signed, smaller, splat, store, word
 
 TINY = 1e-300
 MARGINAL = 1e-12  # growth below this share of the largest |lambda| is round-off, not growth
 
 
-def entries(matrices: Any, start: int, number: int, spare: Any) -> Any:
+def entries(matrices: np.ndarray, start: int, number: int, spare: np.ndarray) -> Any:
     """The four entries of the matrices from `start` on; `spare` is room for four packed numbers."""
     if start + LANES <= number:
         return columns(matrices, start // LANES)
@@ -26,14 +28,14 @@ def entries(matrices: Any, start: int, number: int, spare: Any) -> Any:
     return columns(spare, 0)
 
 
-def masses(m: Any, start: int, number: int, spare: Any) -> Any:
+def masses(m: np.ndarray, start: int, number: int, spare: np.ndarray) -> Any:
     """Their M; of one matrix that for all."""
     if len(m) == 4:
         return splat(m[0]), splat(m[1]), splat(m[2]), splat(m[3])
     return entries(m, start, number, spare)
 
 
-def put(out: Any, start: int, number: int, value: Any, spare: Any) -> None:
+def put(out: np.ndarray, start: int, number: int, value: Lanes, spare: np.ndarray) -> None:
     """Write a number of each of the systems from `start` on."""
     if start + LANES <= number:
         store(out, start // LANES, value)
@@ -43,7 +45,7 @@ def put(out: Any, start: int, number: int, value: Any, spare: Any) -> None:
             out[start + lane] = spare[lane]
 
 
-def polynomial(m: Any, c: Any, k: Any) -> Any:
+def polynomial(m: tuple[Any, ...], c: tuple[Any, ...], k: tuple[Any, ...]) -> Any:
     """Coefficients a4 ... a0 of det(s^2 M + s C + K), each given by its four entries."""
     a4 = m[0] * m[3] - m[1] * m[2]
     a3 = m[0] * c[3] + c[0] * m[3] - m[1] * c[2] - c[1] * m[2]
@@ -53,7 +55,7 @@ def polynomial(m: Any, c: Any, k: Any) -> Any:
     return a4, a3, a2, a1, a0
 
 
-def hurwitz_margin(a4: Any, a3: Any, a2: Any, a1: Any, a0: Any) -> Any:
+def hurwitz_margin(a4: Lanes, a3: Lanes, a2: Lanes, a1: Lanes, a0: Lanes) -> Any:
     """Positive just where every root has a negative real part; NaN where a coefficient is."""
     sign = signed(splat(1.0), a4)
     a4, a3, a2, a1, a0 = abs(a4), a3 * sign, a2 * sign, a1 * sign, a0 * sign
@@ -61,7 +63,7 @@ def hurwitz_margin(a4: Any, a3: Any, a2: Any, a1: Any, a0: Any) -> Any:
     return select(last == last, smaller(smaller(a3, a1), smaller(a0, last)), last)
 
 
-def flags(m: Any, c: Any, k: Any, number: int, words: Any, spare: Any) -> None:
+def flags(m: np.ndarray, c: np.ndarray, k: np.ndarray, number: int, words: np.ndarray, spare: np.ndarray) -> None:
     """Bit i of word g tells whether all real parts of system 16 g + i are negative; of M one or as many."""
     for start in range(0, number, LANES):
         mass = masses(m, start, number, spare)
@@ -70,7 +72,7 @@ def flags(m: Any, c: Any, k: Any, number: int, words: Any, spare: Any) -> None:
         words[start // LANES] = word(hurwitz_margin(a4, a3, a2, a1, a0) > splat(0.0))
 
 
-def resolvent_root(p: Any, q: Any, r: Any) -> Any:
+def resolvent_root(p: Lanes, q: Lanes, r: Lanes) -> Any:
     """A root z >= 0 of z ((z + p)^2 - 4 r) = q^2, from s^4 + p s^2 + q s + r.
 
     To the right of the bound below, or left of it where the cubic is concave, Newton's iterates are monotone.
@@ -95,7 +97,7 @@ def resolvent_root(p: Any, q: Any, r: Any) -> Any:
     return larger(z, zero)
 
 
-def rightmost_of_quadratic(p: Any, q: Any) -> Any:
+def rightmost_of_quadratic(p: Lanes, q: Lanes) -> Any:
     """Real and imaginary part of the root of s^2 + p s + q with the largest real part, and how many roots grow.
 
     A complex pair counts once.
@@ -112,7 +114,7 @@ def rightmost_of_quadratic(p: Any, q: Any) -> Any:
     return real, select(d < zero, rise, zero), growing
 
 
-def factors(a4: Any, a3: Any, a2: Any, a1: Any, a0: Any) -> Any:
+def factors(a4: Lanes, a3: Lanes, a2: Lanes, a1: Lanes, a0: Lanes) -> Any:
     """p1, q1, p2, q2 and a scale with quartic = a4 (s^2 + p1 s + q1)(s^2 + p2 s + q2) in s / scale."""
     zero, one, tiny = splat(0.0), splat(1.0), splat(TINY)
     inverse = one / a4
@@ -148,7 +150,7 @@ def factors(a4: Any, a3: Any, a2: Any, a1: Any, a0: Any) -> Any:
     return p1, q1, p2, q2, scale
 
 
-def rightmost(a4: Any, a3: Any, a2: Any, a1: Any, a0: Any) -> Any:
+def rightmost(a4: Lanes, a3: Lanes, a2: Lanes, a1: Lanes, a0: Lanes) -> Any:
     """Real and imaginary part of the root of the quartic with the largest real part, and how many grow."""
     p1, q1, p2, q2, scale = factors(a4, a3, a2, a1, a0)
     g1, w1, n1 = rightmost_of_quadratic(p1, q1)
@@ -158,7 +160,8 @@ def rightmost(a4: Any, a3: Any, a2: Any, a1: Any, a0: Any) -> Any:
 
 
 def growth_and_frequency(
-    m: Any, c: Any, k: Any, growth: Any, omega: Any, count: Any, spare: Any
+    m: np.ndarray, c: np.ndarray, k: np.ndarray, growth: np.ndarray, omega: np.ndarray,
+    count: np.ndarray, spare: np.ndarray,
 ) -> None:  # fmt: skip
     """Largest real part, its |imaginary part| and the number of growing pairs of each system; of M one or as many."""
     number = len(growth)
@@ -172,7 +175,7 @@ def growth_and_frequency(
         put(count, start, number, growing, spare)
 
 
-def between(a: Any, b: Any, share: Any) -> Any:
+def between(a: tuple[Any, ...], b: tuple[Any, ...], share: Lanes) -> Any:
     """a + share (b - a) of four entries."""
     return (
         a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1]), a[2] + share * (b[2] - a[2]),
@@ -181,9 +184,11 @@ def between(a: Any, b: Any, share: Any) -> Any:
 
 
 def growth_of_parts(
-    m: Any, p: Any, c: Any, e: Any, k: Any, x: float, y: float, growth: Any, spare: Any
+    m: np.ndarray, p: np.ndarray, c: np.ndarray, e: np.ndarray, k: np.ndarray, shares: tuple[float, float],
+    growth: np.ndarray, spare: np.ndarray,
 ) -> None:  # fmt: skip
-    """Largest real part of each system with K = E + x (K - E) and C = P + y (C - P)."""
+    """Largest real part of each system with K = E + x (K - E) and C = P + y (C - P), `shares` x and y."""
+    x, y = shares
     number = len(growth)
     for start in range(0, number, LANES):
         mass = masses(m, start, number, spare)
@@ -193,7 +198,7 @@ def growth_of_parts(
         put(growth, start, number, rightmost(a4, a3, a2, a1, a0)[0], spare)
 
 
-def roots_of(p: Any, q: Any, scale: Any, spare: Any, first: int) -> None:
+def roots_of(p: Lanes, q: Lanes, scale: Lanes, spare: np.ndarray, first: int) -> None:
     """Both roots of s^2 + p s + q times the scale, as four packed numbers of `spare` from `first` on."""
     zero, one = splat(0.0), splat(1.0)
     half = 0.5 * p
@@ -209,7 +214,7 @@ def roots_of(p: Any, q: Any, scale: Any, spare: Any, first: int) -> None:
     store(spare, first + 3, select(swings, -rise, zero))
 
 
-def spectrum(m: Any, c: Any, k: Any, values: Any, spare: Any) -> None:
+def spectrum(m: np.ndarray, c: np.ndarray, k: np.ndarray, values: np.ndarray, spare: np.ndarray) -> None:
     """All four eigenvalues of each system, values (count, 8) of real and imaginary parts; spare for eight packed."""
     number = values.shape[0]
     for start in range(0, number, LANES):

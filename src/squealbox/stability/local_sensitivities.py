@@ -22,7 +22,7 @@ from squealbox.arguments import public
 from squealbox.parameters import ParameterError
 from squealbox.result import Array, Result, quantity
 from squealbox.stability.mode import Mode
-from squealbox.system import as_system
+from squealbox.system import DesignOrSystem, as_system
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -69,7 +69,7 @@ class LocalSensitivity(Result):
 
 
 @public(parameters=None)
-def local_sensitivity(design_or_system: Any, mode: Mode) -> LocalSensitivity:
+def local_sensitivity(design_or_system: DesignOrSystem, mode: Mode) -> LocalSensitivity:
     """Derivatives of an eigenvalue in masses, dampers and springs at every freedom, masses at nodes, and components.
 
     Parameters

@@ -11,6 +11,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from squealbox.arguments import named, public
+from squealbox.family import DesignOrRecipe
 from squealbox.labelled import Labelled, Labels
 from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.stability.eigenvalues import MARGINAL
@@ -84,7 +85,7 @@ class StabilityMap(Result):
 
 @public(axes=named)
 def stability_map(
-    design: Any,
+    design: DesignOrRecipe,
     axes: Mapping[str, Any],
     *,
     mechanism: bool = True,
@@ -154,7 +155,13 @@ def _block(steady: Steady, mechanism: bool, steps: int, engine: Engine) -> dict[
 
 
 def _columns(
-    growth: Any, omega: Any, growing: Any, scale: Any, circulation: Any, slope: Any, mechanism: bool
+    growth: np.ndarray,
+    omega: np.ndarray,
+    growing: np.ndarray,
+    scale: np.ndarray,
+    circulation: np.ndarray,
+    slope: np.ndarray,
+    mechanism: bool,
 ) -> dict[str, Any]:
     """The columns of a map; `scale` [rad/s] is the size of the worst eigenvalue, NaN where there is none."""
     unstable = growing > 0

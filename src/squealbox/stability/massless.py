@@ -16,7 +16,8 @@ from typing import Any
 import numpy as np
 
 from squealbox.result import COMPLETED, Array, Outcome, Result, quantity
-from squealbox.stability.family import steady_sliding
+from squealbox.stability.family import Steady, steady_sliding
+from squealbox.system import DesignOrSystem
 from squealbox.words import growing
 
 ZERO = 1e-12  # singular values below this share of 1 (all matrices are scaled to 1) count as zero
@@ -52,7 +53,7 @@ class FiniteSpectrum(Result):
         return "\n".join([*lines, f"{self.infinite} eigenvalues at infinity"])
 
 
-def finite_spectrum(design_or_system: Any, time: float = 0.0) -> FiniteSpectrum:
+def finite_spectrum(design_or_system: DesignOrSystem, time: float = 0.0) -> FiniteSpectrum:
     """The finite eigenvalues of (lambda^2 M + lambda C_eff + K_eff) u = 0 about steady sliding, M singular or not.
 
     Parameters
@@ -89,7 +90,7 @@ def finite_spectrum(design_or_system: Any, time: float = 0.0) -> FiniteSpectrum:
     )
 
 
-def _pencil(steady: Any) -> tuple[Any, Any, float]:
+def _pencil(steady: Steady) -> tuple[Any, Any, float]:
     """E and A with entries up to about 1, and the time scale s [1/s] they are scaled with."""
     mass, damping, stiffness = (float(np.max(np.abs(matrix))) for matrix in (steady.M, steady.C, steady.K))
     rate = np.sqrt(stiffness / mass) if mass > 0.0 else stiffness / damping if damping > 0.0 else 1.0
@@ -101,7 +102,7 @@ def _pencil(steady: Any) -> tuple[Any, Any, float]:
     return np.block([[one, zero], [zero, inertia]]), np.block([[zero, one], [-spring, -damper]]), rate
 
 
-def reduced(left: Any, right: Any) -> tuple[Any, Any, Any] | None:
+def reduced(left: np.ndarray, right: np.ndarray) -> tuple[Any, Any, Any] | None:
     """A pencil with the same finite eigenvalues whose first matrix can be inverted, and what its states stand for.
 
     None where every number is an eigenvalue.

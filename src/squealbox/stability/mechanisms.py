@@ -32,7 +32,7 @@ from squealbox.stability.family import Steady, entry, steady_sliding
 from squealbox.stability.in_band import IDLE, eigenvalues_in_band, ranked_in_band, worst_in_band
 from squealbox.stability.spectra import Engine, compiled, growth_of_parts, largest_growth
 from squealbox.stability.state_matrix import spectrum
-from squealbox.system import Linearised
+from squealbox.system import DesignOrSystem, Linearised
 
 NAMES = ("stable", "flutter", "negative_slope", "divergence", "mixed")
 STABLE, FLUTTER, NEGATIVE_SLOPE, DIVERGENCE, MIXED, UNKNOWN = 0, 1, 2, 3, 4, -1
@@ -69,7 +69,7 @@ class Mechanism:
         return f"{self.name.replace('_', ' ')} ({shares})"
 
 
-def share(circulation: Any, slope: Any) -> Any:
+def share(circulation: float | np.ndarray, slope: float | np.ndarray) -> Any:
     """circulation+ / (circulation+ + slope+), NaN where both are negative."""
     feeding, weakening = np.maximum(circulation, 0.0), np.maximum(slope, 0.0)
     with np.errstate(invalid="ignore", divide="ignore"):
@@ -131,7 +131,13 @@ def ranked_growth(about: Linearised, rank: int, engine: Engine = "auto") -> Any:
     return -np.sort(np.where(rigid, np.inf, -values.real), axis=-1)[..., rank]
 
 
-def mechanism_codes(growth: Any, angular_frequency: Any, circulation: Any, slope: Any, scale: Any) -> Any:
+def mechanism_codes(
+    growth: float | np.ndarray,
+    angular_frequency: float | np.ndarray,
+    circulation: float | np.ndarray,
+    slope: float | np.ndarray,
+    scale: float | np.ndarray,
+) -> Any:
     """Codes into `NAMES`: 0 stable, 1 flutter, 2 negative slope, 3 divergence, 4 mixed; -1 without a spectrum."""
     flutter = share(circulation, slope)
     conditions = [
@@ -166,7 +172,7 @@ def mechanism_at(
 
 
 @public()
-def mechanism(design_or_system: Any, time: float = 0.0) -> Mechanism:
+def mechanism(design_or_system: DesignOrSystem, time: float = 0.0) -> Mechanism:
     """Why one system is unstable at `time` [s]; "stable" when it is not, "unknown" without steady sliding.
 
     Under sampled loops it is "unknown" too: of what is held between samples no part is friction's.
@@ -179,8 +185,9 @@ def mechanism(design_or_system: Any, time: float = 0.0) -> Mechanism:
     steady = steady_sliding(design_or_system, time)
     if steady.K.ndim > 2:
         raise ValueError(f"leading axes {steady.K.shape[:-2]}: mechanism() is for one system, stability_map() for many")
-    band = design_or_system.band if isinstance(design_or_system, ReducedBrake) else None
-    if band is not None:
+    band = None
+    if isinstance(design_or_system, ReducedBrake):
+        band = design_or_system.band
         growth, omega, _ = worst_in_band(eigenvalues_in_band(design_or_system, time))
     else:
         growth, omega, _ = (float(x) for x in largest_growth(steady, "numpy"))
@@ -204,7 +211,7 @@ def passive_stiffness(steady: Steady) -> Any:
     return np.where(definite[..., None, None], symmetric, steady.elastic)
 
 
-def negative_part(symmetric: Any) -> Any:
+def negative_part(symmetric: np.ndarray) -> Any:
     """The negative semidefinite part of symmetric matrices (..., n, n); exactly zero where round-off alone is left."""
     diagonal = np.diagonal(symmetric, axis1=-2, axis2=-1)
     if np.all(symmetric == diagonal[..., None] * np.eye(symmetric.shape[-1])):

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 
 class OneEigenvalue:
@@ -54,13 +55,13 @@ class Mode(OneEigenvalue):
         return self.steady + turned.real, (self.eigenvalue * turned).real
 
 
-def damping_ratio(eigenvalues: Any) -> Any:
+def damping_ratio(eigenvalues: ArrayLike) -> Any:
     """-Re lambda / |lambda| [-], NaN at lambda = 0."""
     with np.errstate(invalid="ignore", divide="ignore"):
         return -np.real(eigenvalues) / np.abs(eigenvalues)
 
 
-def modal_assurance(shapes: Any, others: Any) -> Any:
+def modal_assurance(shapes: ArrayLike, others: ArrayLike) -> Any:
     """MAC of every column of `shapes` (n, k) with every column of `others` (n, m): shape (k, m).
 
     MAC(a, b) = |a^H b|^2 / ((a^H a) (b^H b)) is 1 for the same shape, 0 for shapes that have nothing in common. Source:

@@ -15,12 +15,12 @@ from squealbox.fe import MeshedBrake, pencil_of, real_modes
 from squealbox.stability.conventions import as_printed_by
 from squealbox.stability.energy import contact_groups, mode_energy
 from squealbox.stability.modes_in_band import BandModes
-from squealbox.system import as_system
+from squealbox.system import DesignOrSystem, as_system
 
 ABOVE = 1.1  # times the band's end up to which uncoupled modes are looked for
 
 
-def mode_table(design_or_system: Any, modes: BandModes, time: float = 0.0) -> dict[str, Any]:
+def mode_table(design_or_system: DesignOrSystem, modes: BandModes, time: float = 0.0) -> dict[str, Any]:
     """Columns of equal length, a row for each mode of the band with Im > 0, by their name with unit.
 
     Parameters
@@ -66,7 +66,7 @@ def mode_table(design_or_system: Any, modes: BandModes, time: float = 0.0) -> di
     return table
 
 
-def _kinetic(design: Any, shapes: Any, moved: Any) -> dict[str, Any]:
+def _kinetic(design: DesignOrSystem, shapes: np.ndarray, moved: np.ndarray) -> dict[str, Any]:
     """Kinetic energy u^H M u of each component in each shape (n, k), with M u of the whole known, (k,) each."""
     if isinstance(design, MeshedBrake):
         masses = {name: mass @ shapes for name, (mass, _) in design.components().items() if mass.nnz}
@@ -75,7 +75,7 @@ def _kinetic(design: Any, shapes: Any, moved: Any) -> dict[str, Any]:
     return {name: np.real(np.einsum("ij,ij->j", shapes[rows].conj(), moved[rows])) for name, rows in parts}
 
 
-def components(design: Any) -> Mapping[str, Any]:
+def components(design: DesignOrSystem) -> Mapping[str, Any]:
     """Rows of each component that the nodes of an assembled brake name; empty where they name none."""
     structure = design.exported() if hasattr(design, "exported") else None
     if structure is None or structure.nodes is None or structure.labels is None:

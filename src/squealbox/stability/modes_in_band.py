@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.fe import (
     Certificate,
@@ -28,7 +29,7 @@ from squealbox.fe import (
 from squealbox.result import Array, Outcome, quantity
 from squealbox.sparse_sliding import at_rest
 from squealbox.stability.eigenvalues import ComplexModes
-from squealbox.system import InvalidSystem, System, as_system, equilibrium
+from squealbox.system import DesignOrSystem, Equilibrium, InvalidSystem, System, as_system, equilibrium
 
 Way = Literal["projection", "full"]
 TOLERANCE = 0.05  # [1/s]
@@ -85,7 +86,7 @@ class BandModes(ComplexModes):
 
 
 def band_modes(
-    design_or_system: Any,
+    design_or_system: DesignOrSystem,
     band: tuple[float, float] | None,
     *,
     time: float = 0.0,
@@ -150,7 +151,12 @@ def band_modes(
 
 
 def certified(
-    design_or_system: Any, eigenvalues: Any, band: tuple[float, float], *, time: float = 0.0, most: int = 150
+    design_or_system: DesignOrSystem,
+    eigenvalues: ArrayLike,
+    band: tuple[float, float],
+    *,
+    time: float = 0.0,
+    most: int = 150,
 ) -> Certificate:
     """Whether a list of eigenvalues [1/s] holds every mode of a sparse system that grows in the band (f1, f2) [Hz].
 
@@ -200,7 +206,7 @@ def band_table(modes: BandModes) -> str:
     return "\n".join(lines)
 
 
-def _checked_band(band: Any) -> tuple[float, float]:
+def _checked_band(band: tuple[float, float] | None) -> tuple[float, float]:
     if band is None:
         raise ValueError("band is missing: a sparse system needs the band of frequency looked at, band=(f1, f2) in Hz")
     if np.shape(band) != (2,) or not (np.all(np.isfinite(band)) and 0.0 < band[0] < band[1]):
@@ -238,7 +244,9 @@ def _full(pencil: Pencil, band: tuple[float, float], count: int, common: dict[st
     )
 
 
-def _nothing(design: Any, system: System, state: Any, band: tuple[float, float], time: float) -> BandModes:
+def _nothing(
+    design: DesignOrSystem, system: System, state: Equilibrium, band: tuple[float, float], time: float
+) -> BandModes:
     none, flat = np.zeros((system.size, 0), dtype=complex), np.zeros(0, dtype=complex)
     return BandModes(
         eigenvalues=flat,
@@ -267,10 +275,10 @@ def _outcome(complete: bool, count: int, found: int, top: float) -> Outcome:
     return Outcome("real_modes_missing", message, found=found, count=count)
 
 
-def _inputs(design: Any, time: float) -> dict[str, Any]:
+def _inputs(design: DesignOrSystem, time: float) -> dict[str, Any]:
     """The design; a bare system of sparse matrices is too large to be kept in every result."""
     return {"system": None if isinstance(design, System) else design, "time": time}
 
 
-def _both(values: Any) -> Any:
+def _both(values: np.ndarray) -> Any:
     return np.concatenate([values, np.conj(values)])

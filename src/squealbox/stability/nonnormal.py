@@ -11,10 +11,12 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.arguments import public
 from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.stability.family import Steady, steady_sliding
+from squealbox.system import DesignOrSystem
 
 PER_PERIOD = 12  # instants of the envelope in the shortest period
 MOST_POINTS = 20000
@@ -47,7 +49,7 @@ class TransientGrowth(Result):
 
 @public()
 def transient_growth(
-    design_or_system: Any, duration: float | None = None, *, points: int = 400, at: float = 0.0
+    design_or_system: DesignOrSystem, duration: float | None = None, *, points: int = 400, at: float = 0.0
 ) -> TransientGrowth:
     """Numerical abscissa, largest transient amplification and the optimal start of one system.
 
@@ -93,7 +95,7 @@ def transient_growth(
 
 
 @public()
-def pseudospectrum(design_or_system: Any, real: Any, imaginary: Any, at: float = 0.0) -> Any:
+def pseudospectrum(design_or_system: DesignOrSystem, real: ArrayLike, imaginary: ArrayLike, at: float = 0.0) -> Any:
     """Least singular value of z - A [1/s] on the grid z = real + i imaginary, shape (len(imaginary), len(real)).
 
     `at` [s]: instant at which schedules are taken.
@@ -106,7 +108,7 @@ def pseudospectrum(design_or_system: Any, real: Any, imaginary: Any, at: float =
     return np.linalg.svd(z[..., None, None] * np.eye(matrix.shape[0]) - matrix, compute_uv=False)[..., -1]
 
 
-def _single(design_or_system: Any, time: float) -> Steady:
+def _single(design_or_system: DesignOrSystem, time: float) -> Steady:
     steady = steady_sliding(design_or_system, time)
     if steady.K.ndim > 2:
         raise ValueError(f"leading axes {steady.K.shape[:-2]}: expected one system")
@@ -131,7 +133,7 @@ def _energy_coordinates(steady: Steady) -> tuple[Any, Any]:
     return root @ plain @ np.linalg.inv(root), root
 
 
-def _norms(matrix: Any, instants: Any) -> Any:
+def _norms(matrix: np.ndarray, instants: np.ndarray) -> Any:
     """|exp(A t)| at equally spaced instants, by repeated multiplication."""
     from scipy.linalg import expm
 
@@ -144,7 +146,7 @@ def _norms(matrix: Any, instants: Any) -> Any:
     return norms
 
 
-def _largest(matrix: Any, instants: Any, envelope: Any) -> tuple[float, float]:
+def _largest(matrix: np.ndarray, instants: np.ndarray, envelope: np.ndarray) -> tuple[float, float]:
     from scipy.linalg import expm
     from scipy.optimize import minimize_scalar
 

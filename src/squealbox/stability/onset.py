@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from squealbox.arguments import public
-from squealbox.family import Bounds, Varied
+from squealbox.family import Bounds, DesignOrRecipe, Varied
 from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.stability.crossing_in_band import crossings_between
 from squealbox.stability.deflation import vibrating
@@ -141,7 +141,12 @@ class CriticalValues(Result):
 
 @public()
 def critical_value(
-    design: Any, parameter: Varied, bounds: Bounds | None = None, *, points: int | None = None, time: float = 0.0
+    design: DesignOrRecipe,
+    parameter: Varied,
+    bounds: Bounds | None = None,
+    *,
+    points: int | None = None,
+    time: float = 0.0,
 ) -> CriticalValue:
     """The first value from below, between `bounds`, at which steady sliding changes its stability.
 
@@ -179,7 +184,12 @@ def critical_value(
 
 @public()
 def critical_values(
-    design: Any, parameter: Varied, bounds: Bounds | None = None, *, points: int | None = None, time: float = 0.0
+    design: DesignOrRecipe,
+    parameter: Varied,
+    bounds: Bounds | None = None,
+    *,
+    points: int | None = None,
+    time: float = 0.0,
 ) -> CriticalValues:
     """Every value between `bounds` [SI] at which any mode crosses zero growth; arguments as for :func:`critical_value`.
 

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 
-def spectrum_order(eigenvalues: Any) -> Any:
+def spectrum_order(eigenvalues: np.ndarray) -> Any:
     """Indices that put Im >= 0 first, ascending in |Im|, and then the conjugates; shape (..., 2n).
 
     |Im| that agree to 1e-10 of the largest |lambda| count as equal and are ordered by falling growth rate, so that
@@ -25,7 +25,7 @@ def spectrum_order(eigenvalues: Any) -> Any:
     return np.lexsort((-flat.real, group, side), axis=-1).reshape(shape)
 
 
-def halves(flat: Any) -> Any:
+def halves(flat: np.ndarray) -> Any:
     """For real eigenvalues: 0 for the larger half of them (one more of an odd number), 1 for the smaller half."""
     real = flat.imag == 0.0
     rank = np.argsort(np.argsort(np.where(real, -flat.real, np.inf), axis=-1, kind="stable"), axis=-1, kind="stable")

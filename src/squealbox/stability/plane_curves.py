@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 
-def onto_side(inside: Any, outside: Any) -> Any:
+def onto_side(inside: np.ndarray, outside: np.ndarray) -> Any:
     """Where the way from a point in the square to one beyond it leaves the square."""
     way = outside - inside
     ends = np.where(way > 0.0, 1.0, 0.0)
@@ -13,7 +13,7 @@ def onto_side(inside: Any, outside: Any) -> Any:
     return np.clip(inside + np.min(np.clip(shares, 0.0, 1.0)) * way, 0.0, 1.0)
 
 
-def between(a: Any, b: Any, start: Any, first: Any, tangent: Any) -> bool:
+def between(a: np.ndarray, b: np.ndarray, start: np.ndarray, first: np.ndarray, tangent: np.ndarray) -> bool:
     """True when the start lies on the step from a to b, which goes the same way."""
     span = b - a
     share = (start - a) @ span / (span @ span)
@@ -21,7 +21,7 @@ def between(a: Any, b: Any, start: Any, first: Any, tangent: Any) -> bool:
     return bool(0.0 < share <= 1.0 and off < 0.1 * np.linalg.norm(span) and first @ tangent > 0.0)
 
 
-def passed(point: Any, gradient: Any, curves: list[Any], tangents: list[Any], near: float) -> bool:
+def passed(point: np.ndarray, gradient: np.ndarray, curves: list[Any], tangents: list[Any], near: float) -> bool:
     """True when a traced curve runs through `point` with its unstable side on the same side."""
     for points, directions in zip(curves, tangents, strict=True):
         chord = points[1:] - points[:-1]
@@ -37,7 +37,7 @@ def passed(point: Any, gradient: Any, curves: list[Any], tangents: list[Any], ne
     return False
 
 
-def _hermite(a: Any, b: Any, slope_a: Any, slope_b: Any, s: Any) -> Any:
+def _hermite(a: np.ndarray, b: np.ndarray, slope_a: np.ndarray, slope_b: np.ndarray, s: np.ndarray) -> Any:
     return (
         (2.0 * s**3 - 3.0 * s**2 + 1.0) * a
         + (s**3 - 2.0 * s**2 + s) * slope_a

@@ -111,7 +111,9 @@ def _refined(matrices: Matrices, root: complex) -> tuple[complex, Any, Any, comp
     return complex(s), u, w, complex(along), error
 
 
-def _rate(sides: list[tuple[float, Matrices | None]], s: complex, u: Any, w: Any, along: complex) -> float | None:
+def _rate(
+    sides: list[tuple[float, Matrices | None]], s: complex, u: np.ndarray, w: np.ndarray, along: complex
+) -> float | None:
     """d(Re lambda)/dp, from the difference of the matrices on both sides of p, or on one where the other has none."""
     known = [(x, m) for x, m in sides if m is not None]
     if len(known) < 2:

@@ -41,7 +41,7 @@ class Scan:
         """The functions at one value."""
         return self.functions_at(np.array([value]))[0]
 
-    def functions_at(self, values: Any) -> Any:
+    def functions_at(self, values: np.ndarray) -> Any:
         """The functions at several values, of a reduced brake the growth rates in its band."""
         if self.family.band is None:
             return self.functions_of(self.family.at(values))
@@ -137,7 +137,7 @@ def scan(family: SteadyFamily, low: float, high: float, points: int, refinements
     return found
 
 
-def _first(family: SteadyFamily, values: Any) -> Scan:
+def _first(family: SteadyFamily, values: np.ndarray) -> Scan:
     about = family.at(values)
     eigenvalues = spectrum(about)
     known = np.asarray(about.equilibrium.exists) & np.any(np.isfinite(eigenvalues), axis=-1)
@@ -146,7 +146,7 @@ def _first(family: SteadyFamily, values: Any) -> Scan:
     return Scan(family, values, _functions(about, neutral, undamped), neutral, undamped)
 
 
-def _with(found: Scan, more: Any) -> Scan:
+def _with(found: Scan, more: np.ndarray) -> Scan:
     """The scan with more values."""
     more = np.setdiff1d(more, found.values)
     if more.size == 0:
@@ -179,7 +179,7 @@ def _beside_gaps(found: Scan) -> Any:
     return inside_range[(inside_range >= values[0]) & (inside_range <= values[-1])]
 
 
-def _left_out(about: Linearised, eigenvalues: Any, known: Any, neutral: bool) -> int:
+def _left_out(about: Linearised, eigenvalues: np.ndarray, known: np.ndarray, neutral: bool) -> int:
     """Number of functions that say nothing: rigid-body motions, and modes that are neutral at every value."""
     if not np.any(known):
         return 0
@@ -202,7 +202,7 @@ def first_function(samples: list[Linearised]) -> Callable[[Linearised], Any] | N
     return (lambda about: _functions(about, neutral, undamped)[..., 0]) if neutral or undamped else None
 
 
-def coalescence(eigenvalues: Any, rigid: int = 0) -> Any:
+def coalescence(eigenvalues: np.ndarray, rigid: int = 0) -> Any:
     """For spectra symmetric in lambda -> -lambda: positive where a mode grows, zero where two merge or one is zero.
 
     With s = lambda^2, Re (s_i - s_j)^2 is negative just where two s are a conjugate pair, and s positive where a root
@@ -218,7 +218,7 @@ def coalescence(eigenvalues: Any, rigid: int = 0) -> Any:
     return worst - ROUND_OFF
 
 
-def merging(eigenvalues: Any) -> complex:
+def merging(eigenvalues: np.ndarray) -> complex:
     """The eigenvalue at the onset of a neutral system: the mean of the two nearest, or zero at a divergence."""
     squares, half = _squares(eigenvalues)
     pairs = [(abs(squares[i] - squares[j]) ** 2, i, j) for i in range(half) for j in range(i)]
@@ -228,7 +228,7 @@ def merging(eigenvalues: Any) -> complex:
     return complex(0.5 * (eigenvalues[nearest[1]] + eigenvalues[nearest[2]]))
 
 
-def _squares(eigenvalues: Any) -> tuple[Any, int]:
+def _squares(eigenvalues: np.ndarray) -> tuple[Any, int]:
     half = eigenvalues.shape[-1] // 2
     squares = eigenvalues[..., :half] ** 2
     scale = np.max(np.nan_to_num(np.abs(squares)), axis=-1, keepdims=True)
@@ -269,7 +269,7 @@ def is_neutral(about: Linearised) -> Any:
     return none | (skew & symmetric)
 
 
-def _undamped(eigenvalues: Any) -> int:
+def _undamped(eigenvalues: np.ndarray) -> int:
     """Number of modes that are neutral at every value."""
     if eigenvalues.size == 0:
         return 0

@@ -138,14 +138,14 @@ def mesh_doubt(brake: MeshedBrake, modes: Any, element_size: float | None = None
     )
 
 
-def _moved(brake: MeshedBrake, shapes: Any, places: list[Any]) -> Any:
+def _moved(brake: MeshedBrake, shapes: np.ndarray, places: list[Any]) -> Any:
     """Displacements at the places, one after another, of shapes (n, modes)."""
     made = brake.structure()
     parts = zip(made.bodies, made.by_body(shapes), places, strict=True)
     return np.concatenate([row @ values for body, values, place in parts for row in body.points(place)])
 
 
-def _paired(likeness: Any) -> Any:
+def _paired(likeness: np.ndarray) -> Any:
     """The partner of each mode, -1 where there is none."""
     from scipy.optimize import linear_sum_assignment
 

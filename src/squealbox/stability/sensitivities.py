@@ -21,10 +21,12 @@ import numpy as np
 
 from squealbox.arguments import public
 from squealbox.fe import ReducedBrake
+from squealbox.parameters import DataSheet, Parameter
 from squealbox.result import Array, Result, quantity
 from squealbox.stability.eigenvalues import NEAR_DEFECTIVE, Mode, complex_modes, modes_of
 from squealbox.stability.family import SteadyFamily, steady_sliding
 from squealbox.stability.sentences import MERGE
+from squealbox.system import DesignOrSystem
 
 CENTRAL = np.arange(-3.0, 4.0)
 REPEATED = 1e-9  # distance to the next eigenvalue, as a share of |lambda|, below which the two are one
@@ -127,7 +129,7 @@ def free_parameters(design: Any) -> tuple[str, ...]:
     return tuple(name for name, _, value in design.leaves() if isinstance(value, float))
 
 
-def matrix_derivatives(design: Any, names: Sequence[str], time: float = 0.0) -> Mapping[str, Any]:
+def matrix_derivatives(design: DesignOrSystem, names: Sequence[str], time: float = 0.0) -> Mapping[str, Any]:
     """First (k, n, n) and second (k, k, n, n) derivatives of M, C_eff and K_eff in k parameters, by differences.
 
     Returns {"M": (first, second), "C": ..., "K": ...}.
@@ -166,7 +168,7 @@ class _Lines:
         side = self.sides[i] if self.sides[i] != 0 else turn * self.sides[j]
         return way, CENTRAL if side == 0 else side * np.arange(7.0)
 
-    def derivatives(self, samples: Any) -> tuple[Any, Any]:
+    def derivatives(self, samples: np.ndarray) -> tuple[Any, Any]:
         """First (k, n, n) and second (k, k, n, n) derivatives from the samples at `points`."""
         by_line = np.asarray(samples).reshape(len(self.directions), 7, *samples.shape[1:])
         first = np.empty((self.count, *samples.shape[1:]))
@@ -183,7 +185,13 @@ class _Lines:
 
 
 def _derivatives(
-    value: complex, u: Any, w: Any, mass: Any, damping: Any, stiffness: Any, parts: Any
+    value: complex,
+    u: np.ndarray,
+    w: np.ndarray,
+    mass: np.ndarray,
+    damping: np.ndarray,
+    stiffness: np.ndarray,
+    parts: Mapping[str, Any],
 ) -> tuple[Any, Any]:
     dynamic = value**2 * mass + value * damping + stiffness
     by_value = 2.0 * value * mass + damping
@@ -202,7 +210,7 @@ def _derivatives(
     return first, -(second + own * np.outer(first, first) + cross + cross.T)
 
 
-def _span(value: float, about: Any) -> tuple[float, int]:
+def _span(value: float, about: Parameter | None) -> tuple[float, int]:
     """Step of a parameter and the side its range leaves free: 0 both, 1 upwards, -1 downwards."""
     step = RELATIVE_STEP * abs(value) if value != 0.0 else RELATIVE_STEP
     if about is not None and value - 3.0 * step < about.low:
@@ -212,13 +220,13 @@ def _span(value: float, about: Any) -> tuple[float, int]:
     return step, 0
 
 
-def _leaf(design: Any, name: str) -> str:
+def _leaf(design: DataSheet, name: str) -> str:
     """The name of the first field behind an alias."""
     head, dot, rest = name.partition(".")
     return str(design.aliases.get(head, (head,))[0]) + dot + rest
 
 
-def _weights(offsets: Any, order: int) -> Any:
+def _weights(offsets: np.ndarray, order: int) -> Any:
     """Weights of the difference formula of that order on the given offsets."""
     powers = np.vander(offsets, increasing=True).T
     wanted = np.zeros(len(offsets))

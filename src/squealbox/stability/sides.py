@@ -40,7 +40,7 @@ def lying_on_a_side(edges: list[Crossing], level: Callable[[Any], Any]) -> tuple
     return curves, left
 
 
-def _pieces(points: Any, sizes: Any, axis: int, side: float) -> list[Any]:
+def _pieces(points: np.ndarray, sizes: np.ndarray, axis: int, side: float) -> list[Any]:
     """Points on one side in order, cut where the next is more than a cell away."""
     order = np.argsort(points[:, 1 - axis], kind="stable")
     points, sizes = points[order], sizes[order]

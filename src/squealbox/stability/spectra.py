@@ -7,6 +7,7 @@ from collections.abc import Callable
 from typing import Any, Literal
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.compiled import LANES, room
 from squealbox.stability import kernels_qr, kernels_spectra, kernels_two_dof
@@ -42,7 +43,7 @@ def largest_growth(about: Linearised, engine: Engine = "auto") -> tuple[Any, Any
     return worst.real, np.abs(worst.imag), pairs
 
 
-def _round_off(about: Linearised, values: Any, doubtful: Any) -> Any:
+def _round_off(about: Linearised, values: np.ndarray, doubtful: np.ndarray) -> Any:
     """True for slow eigenvalues whose growth is less than their own condition leaves sure, (..., 2n)."""
     idle = np.zeros(values.shape, dtype=bool)
     for at in map(tuple, np.argwhere(np.any(doubtful, axis=-1))):
@@ -63,7 +64,7 @@ def asymptotically_stable(about: Linearised, engine: Engine = "auto") -> Any:
     return largest_growth(about, engine)[0] < 0.0
 
 
-def flags_of(mass: Any, damping: Any, stiffness: Any) -> Any:
+def flags_of(mass: np.ndarray, damping: np.ndarray, stiffness: np.ndarray) -> Any:
     """True where every real part is negative, (count,), of flat matrices of 2 x 2; of M one or as many."""
     number = damping.size // 4
     words = np.empty(-(-number // LANES), dtype=np.int64)
@@ -71,7 +72,7 @@ def flags_of(mass: Any, damping: Any, stiffness: Any) -> Any:
     return np.unpackbits(words.astype("<u2").view(np.uint8), count=number, bitorder="little").view(bool)
 
 
-def eigenvalues_of(about: Linearised, engine: Engine = "auto", special: Any = None) -> Any:
+def eigenvalues_of(about: Linearised, engine: Engine = "auto", special: np.bool_ | np.ndarray | None = None) -> Any:
     """All eigenvalues (..., 2n) [1/s] in no particular order; NaN without a spectrum. special : see `with_special`."""
     if about.M.shape[-1] == 2 and compiled(about, engine):
         return with_special(about, _two_dof_spectrum(about), special)
@@ -87,7 +88,7 @@ def eigenvalues_of(about: Linearised, engine: Engine = "auto", special: Any = No
     return with_special(about, values, special)
 
 
-def compiled_eigenvalues(matrices: Any) -> Any:
+def compiled_eigenvalues(matrices: ArrayLike) -> Any:
     """Eigenvalues (..., n) of many small real matrices (..., n, n), as `numpy.linalg.eigvals`, several times faster.
 
     The steps are LAPACK's (balance, Householder, double-shift QR), taken by sixteen matrices together in packed
@@ -132,12 +133,12 @@ def spectra_kernels() -> Any:
     return translated(kernels_qr, kernels_spectra)
 
 
-def parts_of(values: Any) -> Any:
+def parts_of(values: np.ndarray) -> Any:
     """Real and imaginary parts of complex numbers (...), the same memory, (..., 2)."""
     return values.view(float).reshape(*values.shape, 2)
 
 
-def by_lapack(matrices: Any) -> Any:
+def by_lapack(matrices: np.ndarray) -> Any:
     """What the kernels leave: rows or columns that stand alone, sizes near overflow, QR that does not converge.
 
     NaN for matrices that are not finite, or on which LAPACK fails too.
@@ -159,7 +160,7 @@ def compiled(about: Linearised, engine: Engine) -> bool:
     return engine == "compiled" or (engine == "auto" and about.K.size >= WORTH_IT * about.K.shape[-1] ** 2)
 
 
-def growth_of_parts(about: Linearised, passive: Any, elastic: Any) -> Callable[[float, float], Any]:
+def growth_of_parts(about: Linearised, passive: np.ndarray, elastic: np.ndarray) -> Callable[[float, float], Any]:
     """The largest growth rate of E + x (K - E) and P + y (C - P), as a compiled function of x and y.
 
     P is `passive`, E `elastic`. For two degrees of freedom; the matrices are read once, whatever the number of calls.
@@ -173,7 +174,7 @@ def growth_of_parts(about: Linearised, passive: Any, elastic: Any) -> Callable[[
 
     def growth(x: float, y: float) -> Any:
         out = np.empty(damping.size // 4)
-        kernels.growth_of_parts(mass, base, damping, springs, stiffness, float(x), float(y), out, room(4))
+        kernels.growth_of_parts(mass, base, damping, springs, stiffness, (float(x), float(y)), out, room(4))
         return out.reshape(shape)
 
     return growth

@@ -9,6 +9,7 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.stability.eigenvalues import MARGINAL, ComplexModes
 from squealbox.stability.mode import damping_ratio
@@ -16,14 +17,14 @@ from squealbox.stability.mode import damping_ratio
 SQUEAL_BAND = (1e3, 16e3)  # Hz: where brake noise is called squeal
 
 
-def squeal_index(eigenvalues: Any) -> Any:
+def squeal_index(eigenvalues: ArrayLike) -> Any:
     """-2 Re/|Im| [-], as finite-element codes print it; negative grows, NaN where Im = 0. Array in, array out."""
     with np.errstate(invalid="ignore", divide="ignore"):
         index = -2.0 * np.real(eigenvalues) / np.abs(np.imag(eigenvalues))
     return np.where(np.imag(eigenvalues) == 0.0, np.nan, index)
 
 
-def logarithmic_decrement(eigenvalues: Any) -> Any:
+def logarithmic_decrement(eigenvalues: ArrayLike) -> Any:
     """ln of the ratio of two successive amplitudes, -2 pi Re/|Im| [-]; negative grows, NaN where Im = 0.
 
     Array in, array out.
@@ -31,12 +32,12 @@ def logarithmic_decrement(eigenvalues: Any) -> Any:
     return np.pi * squeal_index(eigenvalues)
 
 
-def loss_factor(eigenvalues: Any) -> Any:
+def loss_factor(eigenvalues: ArrayLike) -> Any:
     """Loss factor 2 zeta [-] of a lightly damped mode; negative grows. Array in, array out."""
     return 2.0 * damping_ratio(eigenvalues)
 
 
-def damping_ratio_from(value: Any, convention: str) -> Any:
+def damping_ratio_from(value: ArrayLike, convention: str) -> Any:
     """Damping ratio [-] from another convention: "squeal_index", "logarithmic_decrement", "loss_factor" or "quality".
 
     Array in, array out.

@@ -32,7 +32,7 @@ def special_entries(about: Linearised) -> Any:
     return exists & (~known | (np.asarray(about.equilibrium.floating) > 0))
 
 
-def with_special(about: Linearised, eigenvalues: Any, special: Any = None) -> Any:
+def with_special(about: Linearised, eigenvalues: np.ndarray, special: np.bool_ | np.ndarray | None = None) -> Any:
     """Eigenvalues (..., 2n) with those entries solved exactly whose pencil is singular; see `deflation`.
 
     special : what `special_entries` says, where it was asked
@@ -91,7 +91,7 @@ def state_matrix(about: Linearised) -> tuple[Any, Any, Any, Outcome]:
     return matrix, rate, exists & regular & finite, _outcome(about, exists, finite | ~regular)
 
 
-def _regular(mass: Any) -> Any:
+def _regular(mass: np.ndarray) -> Any:
     """Whether M can be inverted, judged after its rows and columns are brought to one size: kg beside kg m2."""
     if mass.ndim == 2:
         return _regular_alone(np.asarray(mass, dtype=float).tobytes(), len(mass))
@@ -108,13 +108,13 @@ def _regular_alone(content: bytes, size: int) -> Any:
     return _regular(np.frombuffer(content).reshape(1, size, size))[0]
 
 
-def _once(mass: Any) -> Any:
+def _once(mass: np.ndarray) -> Any:
     """M (n, n) where all systems share one, else as it is."""
     shared = all(step == 0 for step in mass.strides[:-2])
     return mass[(0,) * (mass.ndim - 2)] if shared and mass.size else mass
 
 
-def _divided(mass: Any, matrix: Any) -> Any:
+def _divided(mass: np.ndarray, matrix: np.ndarray) -> Any:
     """M^-1 A; one factorisation where all systems share one M."""
     if mass.ndim > 2 or matrix.ndim == 2:
         return np.linalg.solve(mass, matrix)
@@ -122,12 +122,12 @@ def _divided(mass: Any, matrix: Any) -> Any:
     return np.moveaxis(np.linalg.solve(mass, columns.reshape(len(mass), -1)).reshape(columns.shape), 0, -2)
 
 
-def stand_in(matrix: Any) -> Any:
+def stand_in(matrix: np.ndarray) -> Any:
     """A harmless matrix for entries without a spectrum."""
     return np.diag(np.arange(1.0, matrix.shape[-1] + 1.0))
 
 
-def _outcome(about: Linearised, exists: Any, finite: Any) -> Outcome:
+def _outcome(about: Linearised, exists: np.ndarray, finite: bool | np.bool_ | np.ndarray) -> Outcome:
     if not np.all(exists):
         return about.equilibrium.outcome
     if not np.all(finite):
@@ -135,5 +135,5 @@ def _outcome(about: Linearised, exists: Any, finite: Any) -> Outcome:
     return Outcome(COMPLETED)
 
 
-def _largest(matrix: Any) -> Any:
+def _largest(matrix: np.ndarray) -> Any:
     return np.max(np.abs(matrix), axis=(-1, -2))

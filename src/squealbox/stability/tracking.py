@@ -12,9 +12,10 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.arguments import public
-from squealbox.family import Varied
+from squealbox.family import DesignOrRecipe, Varied
 from squealbox.fe import MOST_DAMPED, band_pairs, vibrating
 from squealbox.labelled import Labelled, Labels
 from squealbox.result import Array, Result, quantity
@@ -102,7 +103,9 @@ class TrackedModes(Result):
         )
 
 
-def track(design: Any, parameter: Varied, values: Any = None, *, time: float = 0.0) -> Iterator[TrackedPoint]:
+def track(
+    design: DesignOrRecipe, parameter: Varied, values: ArrayLike | None = None, *, time: float = 0.0
+) -> Iterator[TrackedPoint]:
     """Walk along the values of a parameter with the modes always in the order of the first value.
 
     Parameters
@@ -145,7 +148,7 @@ def _tracked(family: SteadyFamily) -> Iterator[TrackedPoint]:
         yield last.point(criterion, clear)
 
 
-def _track_in_band(family: SteadyFamily, band: Band, values: Any) -> Iterator[TrackedPoint]:
+def _track_in_band(family: SteadyFamily, band: Band, values: np.ndarray) -> Iterator[TrackedPoint]:
     last: _Place | None = None
     for value in values:
         here = _place_in_band(family, band, float(value))
@@ -182,7 +185,9 @@ def _place_in_band(family: SteadyFamily, band: Band, value: float) -> "_Place | 
 
 
 @public()
-def tracked_modes(design: Any, parameter: Varied, values: Any = None, *, time: float = 0.0) -> TrackedModes:
+def tracked_modes(
+    design: DesignOrRecipe, parameter: Varied, values: ArrayLike | None = None, *, time: float = 0.0
+) -> TrackedModes:
     """The whole of :func:`track` as one result, a labelled dataset by ``to_dataset()``.
 
     `time` [s]: instant at which schedules are taken.
@@ -225,17 +230,17 @@ class _Place:
     order: Any
 
     @staticmethod
-    def of(value: Any, steady: Steady, modes: ComplexModes, i: int | slice) -> "_Place":
+    def of(value: float | np.ndarray, steady: Steady, modes: ComplexModes, i: int | slice) -> "_Place":
         order = np.arange(modes.eigenvalues.shape[-1])
         return _Place(value, steady.M[i], steady.C[i], modes.eigenvalues[i], modes.right[i], modes.left[i], order)
 
-    def ordered(self, order: Any) -> "_Place":
+    def ordered(self, order: np.ndarray) -> "_Place":
         return _Place(
             self.value, self.mass, self.damping, self.eigenvalues[order], self.right[:, order], self.left[:, order],
             self.order[order],
         )  # fmt: skip
 
-    def after(self, last: "_Place", order: Any) -> "_Place":
+    def after(self, last: "_Place", order: np.ndarray) -> "_Place":
         """The modes here in the order of the tracks of `last`, and those that came behind them."""
         if np.all(order >= 0):
             return self.ordered(order)
@@ -248,11 +253,11 @@ class _Place:
             found[name][..., gone] = before[..., gone]
         return _Place(self.value, self.mass, self.damping, **found, order=order)
 
-    def point(self, criterion: Any, clear: bool) -> TrackedPoint:
+    def point(self, criterion: np.ndarray, clear: bool) -> TrackedPoint:
         return TrackedPoint(self.value, self.eigenvalues, self.right, self.left, criterion, clear)
 
 
-def _both(place: _Place, criterion: Any, clear: bool) -> TrackedPoint:
+def _both(place: _Place, criterion: np.ndarray, clear: bool) -> TrackedPoint:
     """What is there of the tracks in a band, with the conjugates behind."""
     there = place.order >= 0
     seen = (np.where(there, each, NOWHERE) for each in (place.eigenvalues, place.right, place.left))
@@ -284,7 +289,7 @@ def _followed(
     return after, np.minimum(first, second), clear and clear_too
 
 
-def _outside(eigenvalues: Any, band: Band | None, edge: float) -> Any:
+def _outside(eigenvalues: np.ndarray, band: Band | None, edge: float) -> Any:
     """True where a mode is beyond the band, or by a share `edge` as good as that; nowhere without a band."""
     if band is None:
         return np.zeros(eigenvalues.shape, dtype=bool)
@@ -302,7 +307,9 @@ def _likeness(last: _Place, here: _Place) -> tuple[Any, Any]:
         return np.where(np.isfinite(product), np.minimum(product, 1.0), 0.0), gaps / np.maximum(largest, 1e-300)
 
 
-def _paired(there: Any, criterion: Any, gaps: Any, leaving: Any, coming: Any) -> tuple[Any, Any, bool]:
+def _paired(
+    there: np.ndarray, criterion: np.ndarray, gaps: np.ndarray, leaving: np.ndarray, coming: np.ndarray
+) -> tuple[Any, Any, bool]:
     """Order that continues the tracks `there`, criterion of each and whether that is clear.
 
     By the criterion, with the distance of eigenvalues to break ties. A track that is `leaving` and a mode that is

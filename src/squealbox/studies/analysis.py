@@ -13,6 +13,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.family import is_recipe, varied
 from squealbox.parameters import known_names
@@ -61,7 +62,7 @@ class Task:
         return varied(self.design, values)
 
 
-def plain_function(analysis: Any) -> Any:
+def plain_function(analysis: object) -> Any:
     """The function behind `functools.partial`."""
     while isinstance(analysis, functools.partial):
         analysis = analysis.func
@@ -118,7 +119,7 @@ def _groups(points: Mapping[str, Any]) -> Iterator[Any]:
         yield np.flatnonzero(group.reshape(-1) == code)
 
 
-def _batch(task: Task, values: Mapping[str, Any], where: Any) -> Answer:
+def _batch(task: Task, values: Mapping[str, Any], where: np.ndarray) -> Answer:
     numbers = {name: str(v[0]) if v.dtype.kind == "U" else np.ascontiguousarray(v) for name, v in values.items()}
     answer = task.analysis(task.design_at(numbers))
     names, said, columns = _read(task, answer, batch=len(where))
@@ -128,7 +129,7 @@ def _batch(task: Task, values: Mapping[str, Any], where: Any) -> Answer:
     return np.broadcast_to(names, len(where)), said, columns
 
 
-def _single(task: Task, start: int, values: Mapping[str, Any], where: Any) -> Answer:
+def _single(task: Task, start: int, values: Mapping[str, Any], where: np.ndarray) -> Answer:
     single = {name: str(v[0]) if v.dtype.kind == "U" else float(v[0]) for name, v in values.items()}
     more = {}
     if task.wants_rng:
@@ -165,7 +166,7 @@ def _kept(task: Task, answer: Result) -> dict[str, Column]:
     return kept
 
 
-def _column(task: Task, name: str, value: Any, batch: int | None) -> Column:
+def _column(task: Task, name: str, value: ArrayLike, batch: int | None) -> Column:
     array = np.asarray(value)
     if array.dtype.kind not in "biufcU":
         kind = type(value).__name__

@@ -133,6 +133,6 @@ def common_type(types: list[Any], whole: bool) -> Any:
     return dtype if whole or dtype.kind in "fc" else np.result_type(dtype, np.float64)
 
 
-def missing(dtype: Any) -> Any:
+def missing(dtype: np.dtype[Any]) -> Any:
     """What stands for no value."""
     return {"f": np.nan, "c": complex(np.nan, np.nan), "U": ""}.get(np.dtype(dtype).kind, 0)

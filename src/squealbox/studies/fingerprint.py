@@ -4,7 +4,7 @@ import dataclasses
 import hashlib
 import inspect
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -52,7 +52,7 @@ def digest(data: bytes) -> str:
     return hashlib.sha256(data).hexdigest()[:32]
 
 
-def plain(value: Any) -> Any:
+def plain(value: object) -> Any:
     """`value` as plain data; a function becomes its name, its settings and a digest of its source."""
     if isinstance(value, DataSheet):
         return to_plain(value)
@@ -94,7 +94,7 @@ def _function(value: Any) -> dict[str, Any]:
     return {**about, "settings": settings} if settings else about
 
 
-def _source(function: Any, deep: bool = True) -> str:
+def _source(function: Callable[..., Any], deep: bool = True) -> str:
     """A digest of the text of a function, of its defaults and of what it has closed over; not of what that calls."""
     try:
         text = inspect.getsource(function if inspect.isroutine(function) else type(function))
@@ -110,7 +110,7 @@ def _source(function: Any, deep: bool = True) -> str:
     return digest(f"{text}{plain(parts)}".encode())
 
 
-def _flat(value: Any, prefix: str = "") -> Iterator[tuple[str, Any]]:
+def _flat(value: object, prefix: str = "") -> Iterator[tuple[str, Any]]:
     if isinstance(value, Mapping):
         for name, item in value.items():
             yield from _flat(item, f"{prefix}.{name}" if prefix else str(name))

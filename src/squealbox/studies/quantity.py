@@ -10,7 +10,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from squealbox.family import varied
+from squealbox.family import DesignOrRecipe, varied
 from squealbox.parameters import DataSheet, Parameter, ParameterError
 
 MAKERS = "squealbox.quantities"  # its functions make quantities
@@ -61,7 +61,7 @@ class Quantity:
     def __call__(self, design: Any) -> Any:
         return self.function(design)
 
-    def excess(self, values: Any) -> Any:
+    def excess(self, values: float | np.ndarray) -> Any:
         """How far `values` are on the side of squeal: positive squeals, zero and below does not; NaN is unknown."""
         return values - self.limit if self.squeals == "above" else self.limit - values
 
@@ -71,7 +71,10 @@ class Quantity:
         return {"name": self.name, "unit": self.unit, "limit": self.limit, "squeals": self.squeals}
 
 
-def as_quantity(given: Any) -> Quantity:
+QuantityLike = Quantity | Callable[[Any], Any]  # a number of a design, or a plain function of one
+
+
+def as_quantity(given: QuantityLike) -> Quantity:
     """`given` as a quantity; a plain function squeals above 0 and is called by its own name."""
     if isinstance(given, Quantity):
         return given
@@ -83,7 +86,9 @@ def as_quantity(given: Any) -> Quantity:
     return Quantity(given, "quantity" if name == "<lambda>" else name.replace("_", " "))
 
 
-def evaluate(design: Any, quantity: Quantity, points: Mapping[str, Any], *, strict: bool = True) -> Any:
+def evaluate(
+    design: DesignOrRecipe | None, quantity: Quantity, points: Mapping[str, Any], *, strict: bool = True
+) -> Any:
     """The quantity at `points` (dotted name to shape (n,)), shape (n,); in blocks of 131,072.
 
     `design` has ``replace``; or is a function of the values in the order of `points`; or is None, when the quantity is
@@ -104,12 +109,12 @@ def evaluate(design: Any, quantity: Quantity, points: Mapping[str, Any], *, stri
     return found
 
 
-def input_of(design: Any) -> Any:
+def input_of(design: object) -> Any:
     """What a result keeps of the design; a function cannot be written to a file and is left out."""
     return design if isinstance(design, DataSheet) else None
 
 
-def _block(design: Any, quantity: Quantity, arrays: Mapping[str, Any]) -> Any:
+def _block(design: DesignOrRecipe | None, quantity: Quantity, arrays: Mapping[str, Any]) -> Any:
     count = next(iter(arrays.values())).size
     if not quantity.batched:
         rows = ({name: float(values[i]) for name, values in arrays.items()} for i in range(count))
@@ -123,7 +128,7 @@ def _block(design: Any, quantity: Quantity, arrays: Mapping[str, Any]) -> Any:
     return values
 
 
-def _inside(design: Any, arrays: Mapping[str, Any]) -> Any:
+def _inside(design: DesignOrRecipe | None, arrays: Mapping[str, Any]) -> Any:
     """True where every value is within the range its parameter declares."""
     inside = np.ones(next(iter(arrays.values())).shape, dtype=bool)
     for name, values in arrays.items():
@@ -134,7 +139,7 @@ def _inside(design: Any, arrays: Mapping[str, Any]) -> Any:
     return inside
 
 
-def declared(design: Any, path: str) -> list[Parameter]:
+def declared(design: object, path: str) -> list[Parameter]:
     """What the design declares of the parameter `path`, one entry for each field that an alias sets."""
     if not isinstance(design, DataSheet):
         return []

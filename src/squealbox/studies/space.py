@@ -164,7 +164,7 @@ def sampled(scatter: JointDistribution, count: int, *, method: str = "sobol", se
     return zipped(scatter.sample(count, method, seed), dim)
 
 
-def as_space(space: Any) -> Space:
+def as_space(space: Space | Mapping[str, Any]) -> Space:
     """A mapping of dotted names to values as the grid it stands for; a `Space` as it is."""
     if isinstance(space, Mapping):
         return grid(space)

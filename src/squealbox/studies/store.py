@@ -257,7 +257,7 @@ class _explained:
     def __enter__(self) -> None:
         return None
 
-    def __exit__(self, kind: Any, error: BaseException | None, trace: Any) -> None:
+    def __exit__(self, kind: object, error: BaseException | None, trace: object) -> None:
         if isinstance(error, (OSError, RuntimeError)):  # the latter from HDF5, which has no errors of the system
             why = getattr(error, "strerror", None) or str(error)
             text = f"{self.path}: cannot be written ({why}); what was finished before is safe, and the study can go on"

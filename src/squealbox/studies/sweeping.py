@@ -3,7 +3,7 @@
 import functools
 import json
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Self
 import numpy as np
 
 from squealbox.arguments import named, public
+from squealbox.family import DesignOrRecipe
 from squealbox.parameters import DataSheet, from_plain, to_plain
 from squealbox.result import Outcome, Result, ResultFileError, provenance
 from squealbox.studies.analysis import StudyError, Task
@@ -163,12 +164,12 @@ class Memory:
 
 @public(space=named, design=None)
 def sweep(
-    design: Any,
-    space: Any,
-    analysis: Any,
+    design: DesignOrRecipe,
+    space: Space | Mapping[str, Any],
+    analysis: Callable[..., Any],
     *,
     out: str | os.PathLike[str] | None = None,
-    keep: Any = (),
+    keep: Sequence[str] = (),
     units: Mapping[str, str] | None = None,
     seed: int = 0,
     chunk: int | None = None,
@@ -305,7 +306,7 @@ def _check(task: Task, points: Space, chunk: int | None) -> None:
         raise StudyError(f"design is a {type(task.design).__name__}: expected a design, or a function that makes one")
 
 
-def _declared(design: Any) -> Iterator[tuple[str, tuple[str, str]]]:
+def _declared(design: object) -> Iterator[tuple[str, tuple[str, str]]]:
     """Dotted name to unit and meaning, aliases included."""
     if not isinstance(design, DataSheet):
         return

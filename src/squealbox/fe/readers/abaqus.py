@@ -185,7 +185,7 @@ class _Substructure:
             self.path, "Abaqus substructure", tuple(self._matrix(labels, *block) for block in self.blocks)
         )
 
-    def _matrix(self, labels: Any, name: str, line: int, numbers: list[float]) -> FileMatrix:
+    def _matrix(self, labels: np.ndarray, name: str, line: int, numbers: list[float]) -> FileMatrix:
         size = len(labels)
         half = size * (size + 1) // 2
         whole = self.unsymmetric and len(numbers) != half  # also an unsymmetric one writes its mass as a half

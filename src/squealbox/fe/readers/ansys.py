@@ -114,11 +114,11 @@ def read_full(path: Path, raw: Any) -> MatrixFile:
     return MatrixFile(path, "Ansys .full", tuple(found), tuple(notes), labels[constrained] if gone else None)
 
 
-def _long(header: Any, low: int, high: int) -> int:
+def _long(header: np.ndarray, low: int, high: int) -> int:
     return (int(header[low]) & 0xFFFFFFFF) | (int(header[high]) << 32)
 
 
-def _labels(records: _Records, header: Any, place: int, size: int, nodes: int) -> tuple[Any, Any]:
+def _labels(records: _Records, header: np.ndarray, place: int, size: int, nodes: int) -> tuple[Any, Any]:
     _, place = records.at(place)  # which kinds of freedoms there are
     numbers, _ = records.at(place)
     counts, place = records.at(_long(header, *FREEDOMS))
@@ -130,7 +130,14 @@ def _labels(records: _Records, header: Any, place: int, size: int, nodes: int) -
 
 
 def _matrix(
-    records: _Records, name: str, kind: str, terms: int, place: int, size: int, labels: Any, constrained: Any
+    records: _Records,
+    name: str,
+    kind: str,
+    terms: int,
+    place: int,
+    size: int,
+    labels: np.ndarray,
+    constrained: np.ndarray,
 ) -> FileMatrix:
     rows, columns, values, count = [], [], [], 0
     for row in range(size):

@@ -7,7 +7,7 @@ import io
 import zipfile
 from pathlib import Path
 from tokenize import TokenError
-from typing import Any
+from typing import IO, Any
 
 import numpy as np
 
@@ -36,7 +36,7 @@ def read_npy(path: Path) -> MatrixFile:
     return MatrixFile(path, "NumPy .npy", (_matrix(path, path.stem, array),))
 
 
-def _one(path: Path, stream: Any, length: int, name: str) -> Any:
+def _one(path: Path, stream: IO[bytes], length: int, name: str) -> Any:
     try:
         version = np.lib.format.read_magic(stream)
         head = np.lib.format.read_array_header_1_0 if version == (1, 0) else np.lib.format.read_array_header_2_0
@@ -116,7 +116,9 @@ def _saved_sparse(path: Path, arrays: dict[str, Any]) -> FileMatrix:
     return _entries(path, path.stem, rows, columns, data.astype(float), shape)
 
 
-def _entries(path: Path, name: str, rows: Any, columns: Any, data: Any, shape: Any) -> FileMatrix:
+def _entries(
+    path: Path, name: str, rows: np.ndarray, columns: np.ndarray, data: np.ndarray, shape: tuple[float, float]
+) -> FileMatrix:
     if len(rows) != len(data) or len(columns) != len(data):
         raise MatrixFileError(path, f"{name} has {len(data)} numbers and {len(rows)} rows: a damaged file")
     if len(data) and (rows.min() < 0 or columns.min() < 0 or rows.max() >= shape[0] or columns.max() >= shape[1]):
@@ -132,7 +134,7 @@ def _entries(path: Path, name: str, rows: Any, columns: Any, data: Any, shape: A
     return complete(path, name, kind, Entries(rows, columns, data), size, "full", digits=16)
 
 
-def _matrix(path: Path, name: str, array: Any) -> FileMatrix:
+def _matrix(path: Path, name: str, array: np.ndarray) -> FileMatrix:
     if array.ndim != 2 or array.dtype.kind not in "fiu" or min(array.shape) < 1:
         raise MatrixFileError(path, f"{name[:40]} has the shape {array.shape}: expected a matrix of real numbers")
     rows, columns = np.nonzero(array)

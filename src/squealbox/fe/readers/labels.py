@@ -4,11 +4,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.fe.readers.matrix import Entries, FileMatrix, MatrixFileError, complete
 
 
-def coded(path: Path, nodes: Any, directions: Any) -> Any:
+def coded(path: Path, nodes: ArrayLike, directions: ArrayLike) -> Any:
     """One whole number for each (node, direction); negative nodes, internal freedoms, sort behind all others."""
     nodes, directions = np.asarray(nodes, dtype=np.int64), np.asarray(directions, dtype=np.int64)
     if directions.size and (directions.min() < 0 or directions.max() > 99_999):
@@ -20,7 +21,7 @@ def coded(path: Path, nodes: Any, directions: Any) -> Any:
     return place * 100_000 + directions
 
 
-def decoded_labels(codes: Any) -> Any:
+def decoded_labels(codes: ArrayLike) -> Any:
     """The inverse of `coded`, shape (n, 2)."""
     place, direction = np.divmod(np.asarray(codes, dtype=np.int64), 100_000)
     return np.column_stack([np.where(place > 2**45, 2**45 - place, place), direction])

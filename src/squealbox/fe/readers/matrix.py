@@ -3,9 +3,13 @@
 import re
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import ArrayLike
+
+if TYPE_CHECKING:
+    from scipy.sparse import sparray
 
 MOST_FREEDOMS = 20_000_000
 MASS, STIFFNESS, DAMPING, STRUCTURAL, OTHER = "mass", "stiffness", "damping", "structural damping", "other"
@@ -169,7 +173,7 @@ def complete(
     return found
 
 
-def _pairs(matrix: Any) -> tuple[int, int, tuple[int, int]]:
+def _pairs(matrix: "sparray") -> tuple[int, int, tuple[int, int]]:
     """Entries off the diagonal that have a twin, all entries off the diagonal, and one without a twin."""
     from scipy.sparse import csr_array
 
@@ -189,7 +193,7 @@ def _pairs(matrix: Any) -> tuple[int, int, tuple[int, int]]:
     return twins, off, (int(lonely.row[at]), int(lonely.col[at]))
 
 
-def _symmetry(matrix: Any) -> str:
+def _symmetry(matrix: "sparray") -> str:
     """Symmetric to the digits of a file (1e-9 of the largest of its row and column), or how far from it."""
     turned = matrix.T.tocsr()
     if np.array_equal(turned.indices, matrix.indices) and np.array_equal(turned.data, matrix.data):
@@ -209,7 +213,7 @@ def _symmetry(matrix: Any) -> str:
     return f"unsymmetric ({int(wrong.sum()) // 2} pairs differ, largest difference {apart.max():.3g})"
 
 
-def _without_diagonal(matrix: Any, labels: Any) -> tuple[str, ...]:
+def _without_diagonal(matrix: "sparray", labels: np.ndarray | None) -> tuple[str, ...]:
     """A note where freedoms are coupled and have no stiffness of their own."""
     lost = np.flatnonzero((matrix.diagonal() == 0.0) & (np.diff(matrix.indptr) > 0))
     if not lost.size:
@@ -218,12 +222,12 @@ def _without_diagonal(matrix: Any, labels: Any) -> tuple[str, ...]:
     return (f"{lost.size} freedoms are coupled without stiffness of their own ({first}): multipliers, or a cut file",)
 
 
-def shown_label(labels: Any, row: int) -> str:
+def shown_label(labels: np.ndarray | None, row: int) -> str:
     """How a freedom is called in a sentence: 7.1 is direction 1 of node 7."""
     return f"{labels[row][0]}.{labels[row][1]}" if labels is not None else f"row {row + 1}"
 
 
-def _whole_half(path: Path, name: str, kind: str, matrix: Any, labels: Any) -> None:
+def _whole_half(path: Path, name: str, kind: str, matrix: "sparray", labels: np.ndarray | None) -> None:
     """A half without a diagonal where rows are coupled was cut, unless the freedom is internal (a multiplier)."""
     if kind not in (STIFFNESS, MASS):
         return
@@ -262,6 +266,6 @@ def check_mass(path: Path, mass: FileMatrix) -> None:
         )
 
 
-def with_labels(matrix: FileMatrix, labels: Any) -> FileMatrix:
+def with_labels(matrix: FileMatrix, labels: ArrayLike) -> FileMatrix:
     """The matrix with the labels of its rows."""
     return replace(matrix, labels=np.asarray(labels, dtype=np.int64))

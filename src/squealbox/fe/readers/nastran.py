@@ -9,7 +9,7 @@ Form 6 is one half of a symmetric matrix, 1 a square one, 2 and 9 rectangular. A
 
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import BinaryIO
 
 import numpy as np
 
@@ -141,7 +141,7 @@ def _take(path: Path, at: int, words: list[str], card: _Card) -> None:
             card.words.append(part[2])
 
 
-def _in_order(path: Path, card: _Card, rows: Any, columns: Any, lines: Any) -> None:
+def _in_order(path: Path, card: _Card, rows: np.ndarray, columns: np.ndarray, lines: np.ndarray) -> None:
     """The code writes columns, and rows in each, in ascending order; a few lines out of order are damage."""
     same = columns[1:] == columns[:-1]
     wrong = np.flatnonzero(np.where(same, rows[1:] <= rows[:-1], columns[1:] < columns[:-1]))

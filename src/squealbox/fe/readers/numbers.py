@@ -1,7 +1,7 @@
 """Numbers from text in blocks, so a file of gigabytes is never held as text; an error names its line."""
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any, BinaryIO
 
@@ -28,7 +28,7 @@ def number(word: str) -> float:
     return value
 
 
-def significant_digits(words: Any) -> int | None:
+def significant_digits(words: Sequence[str]) -> int | None:
     """The largest number of digits any of these numbers is written with."""
     counts = [len(re.sub(r"[eEdD].*$", "", word.strip()).strip("+-").replace(".", "").lstrip("0")) for word in words]
     return max(counts, default=None)
@@ -138,7 +138,7 @@ def _slow(path: Path, block: list[bytes], line: int, width: int, comma: bool, co
     return np.array(rows, dtype=float).reshape(-1, width)
 
 
-def check_index(path: Path, index: Any, size: int | None, first: int | None = None) -> Any:
+def check_index(path: Path, index: np.ndarray, size: int | None, first: int | None = None) -> Any:
     """Indices from 0 for those from 1, which must be 1 to `size`; `first` is the line of the first."""
     most = MOST_FREEDOMS if size is None else size
     bad = np.flatnonzero((index < 1) | (index > most))

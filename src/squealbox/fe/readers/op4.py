@@ -53,7 +53,7 @@ class _Columns:
                 f"{self.name[:16]!r} has {self.columns} columns, {self.rows} rows, type {self.type}: no OP4 matrix",
             )
 
-    def take(self, column: int, row: int, values: Any, line: int | None = None) -> None:
+    def take(self, column: int, row: int, values: np.ndarray, line: int | None = None) -> None:
         """Values from `row` on of `column`, both from 1."""
         if self.per == 2:
             if len(values) % 2:

@@ -4,7 +4,7 @@ import os
 import re
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 import numpy as np
 
@@ -95,7 +95,7 @@ def _bulk(path: Path, lines: list[str]) -> bool:
     )
 
 
-def _coordinates(path: Path, stream: Any, first: str) -> MatrixFile:
+def _coordinates(path: Path, stream: BinaryIO, first: str) -> MatrixFile:
     calculix = path.suffix.lower() in (".sti", ".mas")
     found: MatrixFile = abaqus.read_coordinates(
         path, stream, first, half=calculix, code="CalculiX" if calculix else "Abaqus"

@@ -127,7 +127,7 @@ def _labels(path: Path, block: _Block) -> Any:
     return labels
 
 
-def _matrix(path: Path, block: _Block, labels: Any) -> FileMatrix:
+def _matrix(path: Path, block: _Block, labels: np.ndarray | None) -> FileMatrix:
     rows, columns, values = (np.array(part) for part in zip(*block.entries, strict=True))
     keep = values != 0.0
     if block.rows != block.columns:

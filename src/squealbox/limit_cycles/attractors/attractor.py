@@ -92,7 +92,7 @@ def attractors(
     return [attractor for attractor, _ in groups], label
 
 
-def linked(points: Any, reach: float) -> Any:
+def linked(points: np.ndarray, reach: float) -> Any:
     """Group number of each point (k, m): chains of neighbours whose coordinates differ by at most `reach`."""
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
@@ -104,7 +104,9 @@ def linked(points: Any, reach: float) -> Any:
     return connected_components(graph, directed=False)[1][of.ravel()]
 
 
-def _grouped(ends: Settled, which: Any, signature: Any, reach: float, kind: str) -> list[tuple[Attractor, Any]]:
+def _grouped(
+    ends: Settled, which: np.ndarray, signature: np.ndarray, reach: float, kind: str
+) -> list[tuple[Attractor, Any]]:
     """Attractors and their members, the largest motion last."""
     if which.size == 0:
         return []

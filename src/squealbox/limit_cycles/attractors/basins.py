@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.arguments import public
 from squealbox.limit_cycles.attractors.attractor import (
@@ -38,7 +39,7 @@ from squealbox.limit_cycles.cycles.pinned import at_rest_together
 from squealbox.parameters import ParameterError, known_names
 from squealbox.result import COMPLETED, Array, Outcome, Result, quantity
 from squealbox.start import Start
-from squealbox.system import System, as_system
+from squealbox.system import DesignOrSystem, System, as_system
 
 MOST_LINES = 12  # of a summary, the largest shares
 CONFIDENCE = 0.95
@@ -110,8 +111,8 @@ class Basin(Result):
 
 @public()
 def basin(
-    design_or_system: Any,
-    spread: Any = 1.0,
+    design_or_system: DesignOrSystem,
+    spread: ArrayLike | None = 1.0,
     starts: int = 1000,
     *,
     plane: Sequence[Any] | None = None,
@@ -178,11 +179,11 @@ def basin(
 
 
 def _ended(
-    system: System, batch: Batch, points: Any, duration: float | None, refine: bool
+    system: System, batch: Batch, points: np.ndarray, duration: float | None, refine: bool
 ) -> tuple[Settled, list[Attractor], Any]:
     """How all ended, the attractors and the index of each motion's own. The first starts find what the others reach."""
 
-    def run(part: Any, known: list[Attractor]) -> Settled:
+    def run(part: np.ndarray, known: list[Attractor]) -> Settled:
         q, qd = np.split(part, 2, axis=1)
         return settle(batch, q, qd, duration=duration, same=LOOSE if refine else TIGHT, often=refine,
                       known=stable_cycles(known))  # fmt: skip
@@ -213,7 +214,7 @@ def interval(count: int, total: int) -> tuple[float, Any]:
     return count / total, np.array([span.low, span.high])
 
 
-def place(names: Sequence[str], given: Any) -> int:
+def place(names: Sequence[str], given: int | str) -> int:
     """The place of a state in (q, q') from its place or name."""
     if isinstance(given, str) and given in names:
         return list(names).index(given)
@@ -241,7 +242,7 @@ def half_widths(system: System, spread: float = 1.0) -> Any:
     return _spread(spread, Scales.of(Batch.over(system), 1), system.size)
 
 
-def _spread(spread: Any, scales: Scales, n: int) -> Any:
+def _spread(spread: ArrayLike | None, scales: Scales, n: int) -> Any:
     speed = float(scales.speed[0]) or 1.0
     usual = np.repeat([speed / float(scales.slowest[0]), speed], n)
     given = np.asarray(1.0 if spread is None else spread, dtype=float)
@@ -251,7 +252,7 @@ def _spread(spread: Any, scales: Scales, n: int) -> Any:
     return half
 
 
-def _outcome(label: Any, found: Sequence[Attractor]) -> Outcome:
+def _outcome(label: np.ndarray, found: Sequence[Attractor]) -> Outcome:
     if len(label) == 0:
         return Outcome("no_sliding", "there is no steady sliding to start about")
     failed = int(np.sum(label == NO_END))

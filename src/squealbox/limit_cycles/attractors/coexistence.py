@@ -16,10 +16,20 @@ from typing import Any, ClassVar
 import numpy as np
 
 from squealbox.arguments import public
-from squealbox.family import Bounds, Family
+from squealbox.family import Bounds, DesignOrRecipe, Family
 from squealbox.limit_cycles.attractors.attractor import linked
 from squealbox.limit_cycles.attractors.basins import unit_starts
-from squealbox.limit_cycles.attractors.settling import FAILED, LOOSE, REPEATS, RESTS, TIGHT, Batch, Scales, settle
+from squealbox.limit_cycles.attractors.settling import (
+    FAILED,
+    LOOSE,
+    REPEATS,
+    RESTS,
+    TIGHT,
+    Batch,
+    Scales,
+    Settled,
+    settle,
+)
 from squealbox.limit_cycles.branches.branch import branch
 from squealbox.limit_cycles.branches.curves import PointCurve, hopf_curve
 from squealbox.parameters import ParameterError
@@ -86,7 +96,7 @@ def _edges(name: str, low: float, high: float) -> str:
 
 @public()
 def coexistence(
-    design: Any,
+    design: DesignOrRecipe,
     bounds: Mapping[str, Bounds],
     *,
     columns: int = 24,
@@ -173,7 +183,7 @@ class _Far:
     spread: float
     seed: int
 
-    def settled(self, batch: Batch, count: int, rows: Any) -> Any:
+    def settled(self, batch: Batch, count: int, rows: np.ndarray) -> Any:
         """How they end about the steady sliding of some of the `count` systems, one system after the other."""
         scales = Scales.of(batch, count).take(rows)
         n = scales.rest.shape[-1]
@@ -184,7 +194,9 @@ class _Far:
         return settle(batch.take(np.repeat(rows, self.starts)), *start, stretches=STRETCHES, same=LOOSE)
 
 
-def _grid(design: Any, names: Any, x: Any, y: Any, far: _Far, threads: int | None) -> Any:
+def _grid(
+    design: DesignOrRecipe, names: Sequence[str], x: np.ndarray, y: np.ndarray, far: _Far, threads: int | None
+) -> Any:
     """Share of far starts that vibrate, and whether sliding is stable, over the grid."""
     plane = dict(zip(names, (v.ravel() for v in np.meshgrid(x, y, indexing="ij")), strict=True))
     count, shape = len(x) * len(y), (len(x), len(y), far.starts)
@@ -196,12 +208,20 @@ def _grid(design: Any, names: Any, x: Any, y: Any, far: _Far, threads: int | Non
     return {"vibrates": share, "stable": growth < 0.0}
 
 
-def _onset(design: Any, names: Any, ends: tuple[float, float], value: float) -> float:
+def _onset(design: Any, names: Sequence[str], ends: tuple[float, float], value: float) -> float:
     found = critical_value(design.replace({names[1]: float(value)}), {names[0]: ends})
     return float(found.value) if found.outcome.ok else float("nan")
 
 
-def _followed(design: Any, names: Any, ends: Bounds, top: Any, y: Any, far: _Far, threads: int | None) -> Any:
+def _followed(
+    design: DesignOrRecipe,
+    names: Sequence[str],
+    ends: Bounds,
+    top: np.ndarray,
+    y: np.ndarray,
+    far: _Far,
+    threads: int | None,
+) -> Any:
     """Vibrations of each row just below its onset, followed down in the first parameter until they end."""
     low, high = ends
     step = (high - low) / STEPS
@@ -226,7 +246,7 @@ def _followed(design: Any, names: Any, ends: Bounds, top: Any, y: Any, far: _Far
     return _lowest(len(y), n, low, row, at, size, state, amplitude)
 
 
-def _different(found: Any, row: Any, rows: int) -> Any:
+def _different(found: Settled, row: np.ndarray, rows: int) -> Any:
     """Up to `FOLLOWED` vibrations of different size in each row."""
     chosen: list[int] = []
     for i in range(rows):
@@ -241,7 +261,16 @@ def _different(found: Any, row: Any, rows: int) -> Any:
     return np.array(chosen, dtype=int)
 
 
-def _lowest(rows: int, n: int, low: float, row: Any, at: Any, size: Any, state: Any, amplitude: Any) -> Any:
+def _lowest(
+    rows: int,
+    n: int,
+    low: float,
+    row: np.ndarray,
+    at: np.ndarray,
+    size: np.ndarray,
+    state: np.ndarray,
+    amplitude: np.ndarray,
+) -> Any:
     """Of each row the vibration that reached lowest."""
     end, resolution = np.full(rows, np.nan), np.full(rows, np.nan)
     last, large = np.full((rows, 2 * n), np.nan), np.full((rows, n), np.nan)

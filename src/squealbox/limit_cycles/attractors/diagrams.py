@@ -15,7 +15,7 @@ import numpy as np
 
 from squealbox.arguments import public
 from squealbox.cautions import along, told_place
-from squealbox.family import Family, Varied, unit_of
+from squealbox.family import DesignOrRecipe, Family, Varied, unit_of
 from squealbox.limit_cycles.attractors.sections import Section, passages
 from squealbox.limit_cycles.attractors.settling import (
     FAILED,
@@ -34,7 +34,8 @@ from squealbox.matrices import runs_of_true
 from squealbox.parameters import ParameterError, known_names
 from squealbox.result import COMPLETED, Array, Outcome, Result, quantity
 from squealbox.stability import complex_modes
-from squealbox.start import Start
+from squealbox.start import Start, StartLike
+from squealbox.system import System
 from squealbox.words import sizes_told, unit_at
 
 SWEEPS = ("up", "down", "rest")
@@ -92,7 +93,7 @@ class BifurcationDiagram(Result):
         rests = self.kind == RESTS
         return np.any(rests, axis=0) & np.any(~rests & (self.kind != FAILED), axis=0)
 
-    def stretches(self, inside: Any, shown: Callable[[float], str]) -> str:
+    def stretches(self, inside: np.ndarray, shown: Callable[[float], str]) -> str:
         """The values of `inside` (point,) in words, a stretch of neighbours at a time."""
         ends = [(shown(float(self.value[i])), shown(float(self.value[j]))) for i, j in runs_of_true(inside)]
         return " and ".join(f"at {low}" if low == high else f"from {low} to {high}" for low, high in ends)
@@ -121,7 +122,7 @@ class BifurcationDiagram(Result):
 
 @public()
 def bifurcation_diagram(
-    design: Any,
+    design: DesignOrRecipe,
     parameter: Varied,
     values: Any = None,
     *,
@@ -129,7 +130,7 @@ def bifurcation_diagram(
     starts: int = 0,
     section: Section | None = None,
     returns: int = 40,
-    start: Any = None,
+    start: StartLike = None,
     duration: float | None = None,
     seed: int = 0,
     threads: int | None = None,
@@ -203,7 +204,7 @@ def bifurcation_diagram(
     )  # fmt: skip
 
 
-def _caution(batch: Batch, ends: list[Settled], parameter: str, values: Any, unit: str) -> str:
+def _caution(batch: Batch, ends: list[Settled], parameter: str, values: np.ndarray, unit: str) -> str:
     """Where the motions leave the range of their model: the largest of each sweep, over some of its periods."""
     largest: dict[int, Settled] = {}
     for each in ends:
@@ -265,7 +266,7 @@ def _read(batch: Batch, ends: Settled, section: Section, returns: int) -> Any:
     return found
 
 
-def _instants(ends: Settled, system: Any, returns: int) -> Any:
+def _instants(ends: Settled, system: System, returns: int) -> Any:
     """Samples over the time of so many returns, fine enough for the fastest mode."""
     slow = 2.0 * np.pi / float(np.min(ends.scales.slowest))
     tones = ends.frequency[np.isfinite(ends.frequency) & (ends.frequency > 0.0)]
@@ -275,7 +276,7 @@ def _instants(ends: Settled, system: Any, returns: int) -> Any:
     return np.linspace(0.0, span, 1 + int(np.ceil(FINE * span / min(fast, slow))))
 
 
-def _swept(batch: Batch, ways: list[str], begin: Any, scales: Scales, duration: float | None) -> Any:
+def _swept(batch: Batch, ways: list[str], begin: np.ndarray, scales: Scales, duration: float | None) -> Any:
     """The sweeps in the given ways, side by side, each as what it settles to at every value in rising order."""
     count, n = scales.rest.shape
     state = np.tile(begin, (len(ways), 1))
@@ -296,7 +297,7 @@ def _swept(batch: Batch, ways: list[str], begin: Any, scales: Scales, duration: 
         yield Settled(**ended, scales=scales)
 
 
-def _outcome(kind: Any) -> Outcome:
+def _outcome(kind: np.ndarray) -> Outcome:
     failed, moving = int(np.sum(kind == FAILED)), int(np.sum(kind == MOVING))
     if failed:
         return Outcome("failed_runs", f"{failed} of {kind.size} motions did not reach their end", failed=failed)

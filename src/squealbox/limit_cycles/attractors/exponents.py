@@ -15,15 +15,16 @@ from squealbox.arguments import public
 from squealbox.limit_cycles.cycles.field import Field
 from squealbox.limit_cycles.cycles.starting import state_of
 from squealbox.limit_cycles.cycles.variation import quick_flight
-from squealbox.system import as_system
+from squealbox.start import StartLike
+from squealbox.system import DesignOrSystem, as_system
 
 LOST = 1e-13  # growth over a span below which a direction is forgotten
 
 
 @public()
 def lyapunov_exponents(
-    design_or_system: Any,
-    start: Any,
+    design_or_system: DesignOrSystem,
+    start: StartLike,
     span: float,
     spans: int,
     *,
@@ -70,7 +71,7 @@ def lyapunov_exponents(
     return seen if history else seen[-1]
 
 
-def _grown(moved: Any, total: Any) -> tuple[Any, Any]:
+def _grown(moved: np.ndarray, total: np.ndarray) -> tuple[Any, Any]:
     """The frame orthonormal again, and the sums of logarithms; directions that were forgotten come last.
 
     A column that falls into the span of those before it grows no more. Left in its place, the arbitrary direction that

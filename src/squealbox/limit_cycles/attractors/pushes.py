@@ -17,6 +17,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.arguments import public
 from squealbox.limit_cycles.attractors.attractor import Attractor, attractors
@@ -27,7 +28,7 @@ from squealbox.limit_cycles.cycles.field import q_and_qd
 from squealbox.limit_cycles.cycles.pinned import at_rest_together
 from squealbox.parameters import ParameterError
 from squealbox.result import COMPLETED, Array, Outcome, Result, quantity
-from squealbox.system import System
+from squealbox.system import DesignOrSystem, System
 from squealbox.words import sizes_told
 
 SECTIONS = (12, 8, 8)  # lengths tried at once between two, one round after the other
@@ -73,7 +74,7 @@ class DangerousPush(Result):
 
 @public()
 def dangerous_push(
-    design_or_system: Any,
+    design_or_system: DesignOrSystem,
     energies: tuple[float, float] | None = None,
     *,
     directions: int = 256,
@@ -134,8 +135,8 @@ def dangerous_push(
 
 
 def push_along(
-    design_or_system: Any, direction: Any, bounds: tuple[float, float], *, duration: float | None = None,
-    threads: int | None = None,
+    design_or_system: DesignOrSystem, direction: ArrayLike, bounds: tuple[float, float], *,
+    duration: float | None = None, threads: int | None = None,
 ) -> float:  # fmt: skip
     """The first multiple of `direction` between `bounds` that ends in a vibration; NaN if none does.
 
@@ -173,30 +174,32 @@ class _Search:
             ) from error
         self.factors = factors
 
-    def state(self, u: Any) -> Any:
+    def state(self, u: np.ndarray) -> Any:
         """(dq, dq') of pushes u (..., 2n)."""
         n = self.system.size
         halves = (u[..., :n], u[..., n:])
         parts = [np.linalg.solve(f.T, x[..., None])[..., 0] for f, x in zip(self.factors, halves, strict=True)]
         return np.concatenate(parts, axis=-1)
 
-    def unit(self, state: Any) -> Any:
+    def unit(self, state: np.ndarray) -> Any:
         """u of a push (dq, dq')."""
         n = self.system.size
         return np.concatenate([self.factors[0].T @ state[:n], self.factors[1].T @ state[n:]])
 
-    def settle(self, u: Any) -> Any:
+    def settle(self, u: np.ndarray) -> Any:
         """What pushes (k, 2n) settle to."""
         n, states = self.system.size, self.state(u)
         self.runs += len(u)
         return settle(self.batch, self.rest + states[:, :n], states[:, n:], duration=self.duration,
                       stretches=STRETCHES)  # fmt: skip
 
-    def vibrates(self, u: Any) -> Any:
+    def vibrates(self, u: np.ndarray) -> Any:
         """True where a push does not come to rest."""
         return self.settle(u).kind != RESTS
 
-    def first(self, directions: Any, low: Any, high: Any, sections: tuple[int, ...], even: bool = False) -> Any:
+    def first(
+        self, directions: np.ndarray, low: np.ndarray, high: np.ndarray, sections: tuple[int, ...], even: bool = False
+    ) -> Any:
         """The first length between low and high (k,) at which each direction vibrates; inf where none does."""
         low, high = np.array(low, dtype=float), np.array(high, dtype=float)
         space = np.linspace if even else np.geomspace
@@ -216,19 +219,21 @@ class _Search:
             low, high = lengths[rows, np.maximum(at - 1, 0)], lengths[rows, at]
         return np.where(some, high, np.inf)
 
-    def edge(self, direction: Any, low: float, high: float) -> tuple[float, float]:
+    def edge(self, direction: np.ndarray, low: float, high: float) -> tuple[float, float]:
         """Length at which a direction vibrates, and one just below at which it comes to rest."""
-        length = float(self.first(direction[None], [low], [high], (2 * LENGTHS, *FINE))[0])
+        length = float(self.first(direction[None], np.array([low]), np.array([high]), (2 * LENGTHS, *FINE))[0])
         return length, length / (high / low) ** (1.0 / (2 * LENGTHS * np.prod(FINE)))
 
 
-def _evolved(search: _Search, looked: Any, best: Any, history: list[float], rounds: int, seed: int) -> Any:
+def _evolved(
+    search: _Search, looked: np.ndarray, best: np.ndarray, history: list[float], rounds: int, seed: int
+) -> Any:
     """The best direction after some rounds of differential evolution that begins with the best ones looked at."""
     from scipy.optimize import differential_evolution
 
     reach = np.sqrt(2.0 * history[-1])
 
-    def lengths(x: Any) -> Any:
+    def lengths(x: np.ndarray) -> Any:
         along = (x / np.linalg.norm(x, axis=0)).T
         count = len(along)
         found = search.first(along, np.full(count, 0.3 * reach), np.full(count, 1.5 * reach), SECTIONS)

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.parameters import ParameterError, known_names
 from squealbox.schedules import value_at
@@ -37,7 +38,9 @@ def maxima(motion: Trajectory, dof: int = 0) -> tuple[Any, Any]:
     return t[i] + s * h, x[i] + s * (h * v[i] + s * (b + s * a))
 
 
-def poincare_section(motion: Trajectory, normal: Any, offset: float = 0.0, *, direction: int = 1) -> tuple[Any, Any]:
+def poincare_section(
+    motion: Trajectory, normal: ArrayLike, offset: float = 0.0, *, direction: int = 1
+) -> tuple[Any, Any]:
     """Instants [s] and states (k, 2n) at which normal.(q, q') passes offset: a Poincare section on any plane.
 
     Parameters
@@ -64,7 +67,9 @@ def poincare_section(motion: Trajectory, normal: Any, offset: float = 0.0, *, di
     return instants, states
 
 
-def passages(t: Any, q: Any, qd: Any, normal: Any, offset: Any, direction: int) -> tuple[Any, Any, Any]:
+def passages(
+    t: np.ndarray, q: np.ndarray, qd: np.ndarray, normal: np.ndarray, offset: ArrayLike, direction: int
+) -> tuple[Any, Any, Any]:
     """(index of the motion, instant, state) of each passage in order, of q, qd (m, k, n) through normal (m, 2n)."""
     states, offset = np.concatenate([q, qd], axis=-1), np.asarray(offset, dtype=float)
     beside = np.einsum("mki,mi->mk", states, normal) - offset[:, None]
@@ -84,7 +89,7 @@ def passages(t: Any, q: Any, qd: Any, normal: Any, offset: Any, direction: int) 
     return which, t[first] + high * h, _between(ends, h, high)
 
 
-def _between(ends: tuple[Any, Any], h: Any, share: Any) -> Any:
+def _between(ends: tuple[Any, Any], h: np.ndarray, share: np.ndarray) -> Any:
     """States (k, 2n) at shares of intervals h between two states: the Hermite cubic of q, and its derivative."""
     (first, last), n, s, h = ends, ends[0].shape[1] // 2, share[:, None], h[:, None]
     q, v, rise, w = first[:, :n], h * first[:, n:], last[:, :n] - first[:, :n], h * last[:, n:]
@@ -137,7 +142,7 @@ class Section:
         """Place of `read` in (q, q')."""
         return _place("read", self.read, state_names(system))
 
-    def plane(self, system: System, rest: Any) -> tuple[Any, Any]:
+    def plane(self, system: System, rest: np.ndarray) -> tuple[Any, Any]:
         """normal (..., 2n) and offset (...) beside steady sliding, rest (..., n)."""
         names, n, shape = state_names(system), system.size, np.shape(rest)[:-1]
         contacts = [f"v{i + 1}" for i in range(len(system.contacts))]

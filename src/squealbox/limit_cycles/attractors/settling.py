@@ -52,7 +52,7 @@ FAILED, MOVING, RESTS, REPEATS = range(-1, 3)
 KINDS = {FAILED: "failed", MOVING: "not settled", RESTS: "rests", REPEATS: "repeats"}
 
 
-def _both(memory: Any) -> Any:
+def _both(memory: np.ndarray) -> Any:
     return memory[..., ::-1]
 
 
@@ -91,7 +91,7 @@ class Batch:
             return stacked(self.design)
         return as_system(self.design.replace(dict(self.parameters)) if self.parameters else self.design)
 
-    def take(self, which: Any) -> "Batch":
+    def take(self, which: Sequence[int] | np.ndarray) -> "Batch":
         """Some of it."""
         if isinstance(self.design, list):
             return replace(self, design=[self.design[i] for i in which])
@@ -107,13 +107,13 @@ class Batch:
         """Its first system, without leading axes."""
         return first_of(self.system)
 
-    def sampled(self, q: Any, qd: Any, times: Any) -> tuple[Any, Any, Any]:
+    def sampled(self, q: np.ndarray, qd: np.ndarray, times: np.ndarray) -> tuple[Any, Any, Any]:
         """(t, q, qd) of the motions from (q, qd), each (k, n), at the given instants, (k, instants, n)."""
         run = simulate_ensemble(self.design, self.parameters or None, float(times[-1]), METHOD, (), start=(q, qd),
                                 times=times, threads=self.threads)  # fmt: skip
         return run.sample_time, run.sample_q, run.sample_qd
 
-    def run(self, q: Any, qd: Any, duration: float, observe: Sequence[Observer]) -> Any:
+    def run(self, q: np.ndarray, qd: np.ndarray, duration: float, observe: Sequence[Observer]) -> Any:
         """The ensemble from (q, qd), each (k, n)."""
         return simulate_ensemble(self.design, self.parameters or None, duration, METHOD, observe, start=(q, qd),
                                  threads=self.threads)  # fmt: skip
@@ -144,7 +144,7 @@ class Scales:
         rest = np.where(np.asarray(state.exists)[..., None], state.q, np.nan)
         return cls(np.broadcast_to(rest, (count, n)), *(np.broadcast_to(x, (count,)) for x in (growth, speed, slowest)))
 
-    def take(self, which: Any) -> "Scales":
+    def take(self, which: Sequence[int] | np.ndarray) -> "Scales":
         """Those of some systems."""
         return Scales(*(getattr(self, each.name)[which] for each in fields(self)))
 
@@ -187,7 +187,7 @@ class Settled:
     arrived: Any
     scales: Scales
 
-    def take(self, which: Any) -> "Settled":
+    def take(self, which: Sequence[int] | np.ndarray) -> "Settled":
         """Some of the motions."""
         return Settled(**{each.name: getattr(self, each.name)[which] for each in fields(self) if each.name != "scales"},
                        scales=self.scales.take(which))  # fmt: skip
@@ -204,7 +204,7 @@ class Settled:
 
 
 def settle(
-    batch: Batch, q: Any, qd: Any, *, duration: float | None = None, stretches: int = STRETCHES,
+    batch: Batch, q: np.ndarray, qd: np.ndarray, *, duration: float | None = None, stretches: int = STRETCHES,
     same: float = TIGHT, often: bool = False, known: Sequence[Known] = (),
 ) -> Settled:  # fmt: skip
     """Run all from (q, qd), each (k, n), until they rest or repeat to `same`, for at most 2^stretches - 1 durations.
@@ -262,7 +262,7 @@ def together(ends: Sequence[Settled]) -> Settled:
                    scales=Scales(*scales))  # fmt: skip
 
 
-def settle_on(ends: Settled, batch: Batch, which: Any) -> Settled:
+def settle_on(ends: Settled, batch: Batch, which: np.ndarray) -> Settled:
     """The same with some of the motions run on, from where they ended, until they are surely settled."""
     longer = settle(batch.take(which), ends.q[which], ends.qd[which], duration=float(np.max(ends.time[which])),
                     stretches=STRETCHES - 1)  # fmt: skip
@@ -275,12 +275,12 @@ def settle_on(ends: Settled, batch: Batch, which: Any) -> Settled:
 OBSERVERS = (extent(1.0), frequency(1.0), poincare(1.0))
 
 
-def _level(low: Any, high: Any, scales: Scales) -> Any:
+def _level(low: np.ndarray, high: np.ndarray, scales: Scales) -> Any:
     half = 0.5 * np.max(high - low, axis=-1) * scales.slowest
     return np.where(scales.speed > 0.0, half / np.where(scales.speed > 0.0, scales.speed, 1.0), half)
 
 
-def _judge(earlier: Any, later: Any, apart: float, scales: Scales, same: float) -> Any:
+def _judge(earlier: np.ndarray, later: np.ndarray, apart: float, scales: Scales, same: float) -> Any:
     """MOVING, RESTS or REPEATS of each, from (low, high) in two windows whose middles lie `apart` [s]."""
     (low1, high1), (low2, high2) = earlier, later
     before, now = _level(low1, high1, scales), _level(low2, high2, scales)

@@ -8,6 +8,7 @@ Where a path could not be corrected between two points, the value is their middl
 such cycle.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from typing import Any, ClassVar
 
@@ -16,10 +17,11 @@ import numpy as np
 from squealbox import cautions
 from squealbox.arguments import public
 from squealbox.continuation import PathPoint, StepControl, along
-from squealbox.family import Bounds, Family, Varied, unit_of
+from squealbox.family import Bounds, DesignOrRecipe, Family, Varied, unit_of
 from squealbox.limit_cycles.branches.doubling import doubled
 from squealbox.limit_cycles.branches.harmonic_path import HarmonicPath
 from squealbox.limit_cycles.branches.hopf import HopfPoint
+from squealbox.limit_cycles.branches.paths import CyclePath
 from squealbox.limit_cycles.branches.phases import begun, heading
 from squealbox.limit_cycles.branches.shooting_path import ShootingPath
 from squealbox.limit_cycles.branches.special_points import STRAIGHT, BranchPoint
@@ -29,6 +31,8 @@ from squealbox.limit_cycles.cycles.harmonic_balance import Grid, harmonic_balanc
 from squealbox.limit_cycles.cycles.shooting import CONTACTS, shooting
 from squealbox.parameters import ParameterError, known_names
 from squealbox.result import COMPLETED, Array, Outcome, Result, quantity
+from squealbox.start import StartLike
+from squealbox.system import System
 from squealbox.words import sizes_told, unit_at
 
 METHODS = ("harmonic_balance", "shooting")
@@ -125,10 +129,10 @@ class Branch(Result):
 
 @public()
 def branch(
-    design: Any,
+    design: DesignOrRecipe,
     parameter: Varied,
     bounds: Bounds | None = None,
-    start: Any = None,
+    start: Cycle | HopfPoint | StartLike = None,
     *,
     value: float | None = None,
     method: str = "auto",
@@ -221,7 +225,7 @@ def branch(
     return replace(found, caution=_caution(path, done.visited, found, unit_of(design, parameter)))
 
 
-def _caution(path: Any, visited: list[PathPoint], found: Branch, unit: str) -> str:
+def _caution(path: CyclePath, visited: list[PathPoint], found: Branch, unit: str) -> str:
     """Where the cycles leave the range of their model: at both ends of the branch and where they are largest."""
     if not visited:
         return ""
@@ -237,7 +241,9 @@ def _caution(path: Any, visited: list[PathPoint], found: Branch, unit: str) -> s
     return "; ".join(said.values())
 
 
-def _chosen(make: Any, start: Any, value: float, contact: str) -> tuple[str, Any]:
+def _chosen(
+    make: Callable[[float], System], start: Cycle | HopfPoint | StartLike, value: float, contact: str
+) -> tuple[str, Any]:
     """The method that can follow the cycle at the start, and the start, which may have become that cycle."""
     if isinstance(start, BranchPoint):
         return ("shooting" if start.kind == "period_doubling" else "harmonic_balance"), start
@@ -258,7 +264,13 @@ def _grazing_outcome(specials: list[Special], last: float) -> Outcome:
 
 
 def _harmonic_start(
-    make: Any, start: Any, value: float, contact: str, width: float, harmonics: int, span: float
+    make: Callable[[float], System],
+    start: Any,
+    value: float,
+    contact: str,
+    width: float,
+    harmonics: int,
+    span: float,
 ) -> Any:
     path = HarmonicPath(make, contact, width, Grid(harmonics), span)
     if isinstance(start, HopfPoint):
@@ -330,7 +342,7 @@ def _shooting_start(family: Family, start: Any, value: float, rtol: float) -> An
 
 def _collect(
     visited: list[PathPoint], seen: list[dict[str, Any]], specials: list[Special], outcome: Outcome, parameter: str,
-    settings: dict[str, Any], system: Any, family_: Any,
+    settings: dict[str, Any], system: System, family_: DesignOrRecipe,
 ) -> Branch:  # fmt: skip
     n = system.size
     counted = len(seen[0]["multipliers"]) if seen else 2 * n  # without those of a free common motion

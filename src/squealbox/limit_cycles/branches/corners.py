@@ -31,6 +31,7 @@ RESIDUAL = 30.0  # residual beside a corner over the distance, times the size of
 NEWTON_STEPS = 8
 CLOSE = 1e-9
 MOST = 20  # corners of one branch
+Events = tuple[tuple[int, int], ...]  # (contact, new mode) of each event of a period
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,7 +46,7 @@ class Corner:
     uncertainty: float
 
 
-def kind_of(before: Any, after: Any) -> str:
+def kind_of(before: Events, after: Events) -> str:
     """What happens where the order of events changes: sticking, grazing, or event_order."""
     sticks = [sum(mode == 0 for _, mode in events) for events in (before, after)]
     if sticks[0] != sticks[1]:
@@ -57,6 +58,8 @@ def beyond(path: ShootingPath, walk: Follower, last: PathPoint) -> Corner | Outc
     """How a branch goes on after its last point, or why it does not."""
     equation = walk.equation
     y, before = equation.y(last.x, last.p), path.sequence(last.x, last.p)
+    if before is None:  # the last point itself has no motion
+        return walk.outcome
     inside = _derivative(equation, y)
     seen = None
     for way in _ways(y, last.tangent):
@@ -74,7 +77,7 @@ def beyond(path: ShootingPath, walk: Follower, last: PathPoint) -> Corner | Outc
                 break  # it jumps
             found = _start_of(path, equation, y, last.tangent, inside, outside, distance, before)
             if found is not None:
-                return _corner(path, equation, last, found)
+                return _corner(equation, last, before, found)
     if seen is None:
         return walk.outcome
     after, other = seen
@@ -85,7 +88,7 @@ def beyond(path: ShootingPath, walk: Follower, last: PathPoint) -> Corner | Outc
     return Outcome("jump", message, p=last.p, events_before=str(before), events_after=str(after), **other)
 
 
-def first_other(path: ShootingPath, last: PathPoint, x: Any, p: float) -> dict[str, Any]:
+def first_other(path: ShootingPath, last: PathPoint, x: np.ndarray, p: float) -> dict[str, Any]:
     """The first event of a period that is another at x and p than at the last point, and N there [N].
 
     Empty where one list of events begins like the other and only ends sooner.
@@ -103,21 +106,21 @@ def first_other(path: ShootingPath, last: PathPoint, x: Any, p: float) -> dict[s
             "largest_force": float(np.max(np.abs(forces)))}  # fmt: skip
 
 
-def _ways(y: Any, tangent: Any) -> Iterator[Any]:
+def _ways(y: np.ndarray, tangent: np.ndarray) -> Iterator[Any]:
     """Directions in which the surface is looked for: ahead, then along the parameter."""
     along = np.append(np.zeros(y.size - 1), 1.0)
     yield from (tangent, along, -along)
 
 
-def _derivative(equation: Equation, y: Any) -> Any:
+def _derivative(equation: Equation, y: np.ndarray) -> Any:
     return equation.derivative(y) if np.all(np.isfinite(equation.value(y))) else np.full((1, 1), np.nan)
 
 
 def _start_of(
-    path: ShootingPath, equation: Equation, y: Any, tangent: Any, inside: Any, outside: Any, distance: float,
-    before: Any,
-) -> tuple[Any, Any] | None:  # fmt: skip
-    """(point, tangent) on the branch beyond the corner, with another order of events than before it."""
+    path: ShootingPath, equation: Equation, y: np.ndarray, tangent: np.ndarray, inside: np.ndarray, outside: np.ndarray,
+    distance: float, before: Events,
+) -> tuple[Any, Any, Events] | None:  # fmt: skip
+    """(point, tangent, events) on the branch beyond the corner, with another order of events than before it."""
     normal = np.linalg.svd(outside - inside)[2][0]
     normal = normal if normal @ tangent > 0.0 else -normal
     forward = np.linalg.svd(outside)[2][-1]
@@ -126,21 +129,27 @@ def _start_of(
         found = equation.corrected(y + length * forward, forward, NEWTON_STEPS, CLOSE).y
         if found is None:
             continue
-        new = path.sequence(*equation.point(found)) not in (None, before)
-        if new and 0.2 * length < np.linalg.norm(found - y) < 5.0 * length:
-            return found, null_vector(equation.derivative(found), forward)
+        after = path.sequence(*equation.point(found))
+        if after is None or after == before:
+            continue
+        if 0.2 * length < np.linalg.norm(found - y) < 5.0 * length:
+            return found, null_vector(equation.derivative(found), forward), after
     return None
 
 
-def _corner(path: ShootingPath, equation: Equation, last: PathPoint, found: tuple[Any, Any]) -> Corner:
+def _corner(equation: Equation, last: PathPoint, before: Events, found: tuple[Any, Any, Events]) -> Corner:
     """The corner itself: where the tangents of both sides come nearest to each other."""
-    beyond_it, tangent = found
+    beyond_it, tangent, after = found
     y = equation.y(last.x, last.p)
     ways = np.column_stack([last.tangent, tangent])
     ahead, back = np.linalg.lstsq(ways, beyond_it - y, rcond=None)[0]
     ends = y[-1] + ahead * last.tangent[-1], beyond_it[-1] - back * tangent[-1]
-    kind = kind_of(path.sequence(last.x, last.p), path.sequence(*equation.point(beyond_it)))
     uncertainty = abs(ends[0] - ends[1]) + abs(ends[0] - y[-1])
     return Corner(
-        last, beyond_it, tangent, kind, 0.5 * sum(ends) * equation.scale[-1], uncertainty * equation.scale[-1]
+        last,
+        beyond_it,
+        tangent,
+        kind_of(before, after),
+        0.5 * sum(ends) * equation.scale[-1],
+        uncertainty * equation.scale[-1],
     )

@@ -17,7 +17,7 @@ import numpy as np
 
 from squealbox.arguments import public
 from squealbox.continuation import StepControl, follow
-from squealbox.family import Bounds, Family
+from squealbox.family import Bounds, DesignOrRecipe, Family
 from squealbox.limit_cycles.branches.hopf import (
     HopfPoint,
     critical_pair,
@@ -55,7 +55,7 @@ class PointCurve(Result):
 
 @public()
 def hopf_curve(
-    design: Any, bounds: Mapping[str, Bounds], *, value: float | None = None, points: int = 100
+    design: DesignOrRecipe, bounds: Mapping[str, Bounds], *, value: float | None = None, points: int = 100
 ) -> PointCurve:
     """Hopf points over two parameters, through the first one found in the first parameter.
 
@@ -112,7 +112,7 @@ class _Hopf:
         steady = steady_state(field)
         return field.jacobian(steady, steady_modes(field, steady)) * (self.units[:, None] / self.units)
 
-    def residual(self, x: Any, b: float) -> Any:
+    def residual(self, x: np.ndarray, b: float) -> Any:
         """Of the extended system, over the frequency at the start; NaN outside the range of a parameter."""
         u, w, omega, a = *np.split(x[:-2], 2), x[-2], x[-1]
         matrix = self.matrix(a, b)
@@ -120,7 +120,7 @@ class _Hopf:
         parts = [(matrix @ u + omega * w) / self.rate, (matrix @ w - omega * u) / self.rate]
         return np.concatenate([*parts, [phase.real, phase.imag]])
 
-    def jacobian(self, x: Any, b: float) -> tuple[Any, Any]:
+    def jacobian(self, x: np.ndarray, b: float) -> tuple[Any, Any]:
         """By the unknowns and by the second parameter; the matrix by both from central differences."""
         u, w, omega, a = *np.split(x[:-2], 2), x[-2], x[-1]
         matrix, one, none = self.matrix(a, b), np.eye(len(u)), np.zeros(1)
@@ -134,7 +134,7 @@ class _Hopf:
         by_omega = np.concatenate([w / self.rate, -u / self.rate, none, none])
         return np.column_stack([by_motion, by_omega, by[0]]), by[1]
 
-    def describe(self, x: Any, b: float) -> tuple[float, float]:
+    def describe(self, x: np.ndarray, b: float) -> tuple[float, float]:
         """Frequency [Hz] and first Lyapunov coefficient."""
         field = Field(self.make(float(x[-1]), float(b)))
         eigenvalue, q, p, steady = critical_pair(field, float(x[-2]))
@@ -142,7 +142,13 @@ class _Hopf:
 
 
 def both_ways(
-    residual: Any, x: Any, b: float, spans: Sequence[Bounds], scale: Any, points: int, jacobian: Any = None
+    residual: Callable[[Any, float], Any],
+    x: np.ndarray,
+    b: float,
+    spans: Sequence[Bounds],
+    scale: np.ndarray,
+    points: int,
+    jacobian: Callable[[Any, float], Any] | None = None,
 ) -> list[Any]:
     """Points (x, b, residual) from one end of the curve to the other, and how the two walks ended."""
     (low, high), (bottom, top) = spans
@@ -174,7 +180,12 @@ def ending(walks: list[Any]) -> Outcome:
 
 
 def curve_of(
-    design: Any, walks: list[Any], describe: Any, names: tuple[str, ...], kind: str, outcome: Outcome
+    design: DesignOrRecipe,
+    walks: list[Any],
+    describe: Callable[[Any, float], Any],
+    names: tuple[str, ...],
+    kind: str,
+    outcome: Outcome,
 ) -> PointCurve:
     """The result of the walks; a design is kept, since it knows the units of its parameters."""
     line = [at for i, (kept, _) in enumerate(walks) for at in (kept[:0:-1] if i == 0 and len(walks) > 1 else kept)]

@@ -19,7 +19,7 @@ SHIFTS = (1e-2, 1e-3, 1e-4)  # first distances from the old cycle, in its size, 
 APART = 0.5  # of twice the shift: what half a new cycle is from its start at least; the old one, run twice, is back
 
 
-def doubled(path: ShootingPath, x: Any, p: float) -> tuple[Any, Any]:
+def doubled(path: ShootingPath, x: np.ndarray, p: float) -> tuple[Any, Any]:
     """Unknowns beside the old cycle with twice its period, and the direction to start along, scaled, with p last."""
     equation = Equation.of(path)
     fixed_p = np.append(np.zeros(x.size), 1.0)  # no multiplier but the trivial one is 1 there
@@ -39,7 +39,7 @@ def doubled(path: ShootingPath, x: Any, p: float) -> tuple[Any, Any]:
     return twice + shift * direction[:-1] * path.scale, direction
 
 
-def half_apart(path: ShootingPath, unknowns: Any) -> float:
+def half_apart(path: ShootingPath, unknowns: np.ndarray) -> float:
     """Distance, in the size of the cycle, of the motion after half the period from its start; unknowns end with p."""
     start, period, p = path.start(unknowns[:-1]), float(unknowns[-2]), float(unknowns[-1])
     run = fly(path.field(p), start, 0.5 * period, path.rtol)

@@ -26,7 +26,7 @@ class HarmonicPath:
         self.balances: dict[float, Balance] = {}
         self.column, self.size, self.omega, self.scale = 0, 1.0, 1.0, np.ones(1)
 
-    def begin(self, coefficients: Any, omega: float, p: float, size: float) -> Any:
+    def begin(self, coefficients: np.ndarray, omega: float, p: float, size: float) -> Any:
         """Unknowns of a start; sets the phase and the scales: `size` [m] and omega."""
         turned, self.column = self.balance(p).turned(self.grid.padded(coefficients))
         self.size, self.omega = size, omega
@@ -45,7 +45,7 @@ class HarmonicPath:
         series = self.grid.series(self.grid.values @ fine.series(cycle.q[:-1]))
         return self.begin(series, 2.0 * np.pi / float(cycle.period), p, float(np.max(cycle.amplitude)))
 
-    def rise(self, x: Any) -> Any:
+    def rise(self, x: np.ndarray) -> Any:
         """Direction of growing amplitude at x, for the start beside a Hopf point, in scaled variables with p."""
         coefficients, _ = self.series(x)
         direction = coefficients / self.size
@@ -61,11 +61,11 @@ class HarmonicPath:
                 self.balances.pop(next(iter(self.balances)))
         return self.balances[p]
 
-    def series(self, x: Any) -> tuple[Any, float]:
+    def series(self, x: np.ndarray) -> tuple[Any, float]:
         """Coefficients (2H + 1, n) and omega of a point."""
         return np.insert(x[:-1], self.column, 0.0).reshape(len(self.grid.d), -1), float(x[-1])
 
-    def residual(self, x: Any, p: float) -> Any:
+    def residual(self, x: np.ndarray, p: float) -> Any:
         """R over omega^2 size; NaN, which continuation refuses, where the parameter leaves its range."""
         try:
             self.balance(p)
@@ -73,7 +73,7 @@ class HarmonicPath:
             return np.full(len(x), np.nan)
         return self.balance(p).residual(*self.series(x))[0].ravel() / (self.omega**2 * self.size)
 
-    def jacobian(self, x: Any, p: float) -> tuple[Any, Any]:
+    def jacobian(self, x: np.ndarray, p: float) -> tuple[Any, Any]:
         """By the unknowns (analytic) and by the parameter (central difference)."""
         coefficients, omega = self.series(x)
         balance = self.balance(p)
@@ -87,7 +87,7 @@ class HarmonicPath:
         """Each value has its own equation."""
         return True
 
-    def describe(self, x: Any, p: float) -> dict[str, Any]:
+    def describe(self, x: np.ndarray, p: float) -> dict[str, Any]:
         """Period, extremes, multipliers and least sliding speed of the cycle at a point."""
         coefficients, omega = self.series(x)
         balance = self.balance(p)
@@ -99,13 +99,13 @@ class HarmonicPath:
         return {"period": 2.0 * np.pi / omega, "lowest": low, "highest": high, "multipliers": self.multipliers(x, p),
                 "least_slip": self.least_slip(x, p), "sticking": self.sticking(x, p), "begin": states[0]}  # fmt: skip
 
-    def multipliers(self, x: Any, p: float) -> Any:
+    def multipliers(self, x: np.ndarray, p: float) -> Any:
         """Floquet multipliers of the cycle at a point."""
         steps = max(128, self.grid.samples)
         balance = self.balance(p)
         return balance.field.multipliers(balance.monodromy(*self.series(x), steps))
 
-    def cycle(self, x: Any, p: float) -> Cycle:
+    def cycle(self, x: np.ndarray, p: float) -> Cycle:
         """The cycle at a point, on a fine grid; its error is the share of the last quarter of harmonics."""
         coefficients, omega = self.series(x)
         balance = self.balance(p)
@@ -113,11 +113,11 @@ class HarmonicPath:
         error = balance.tail(coefficients)
         return cycle_of(balance, coefficients, omega, Outcome(COMPLETED), settings, error)
 
-    def sticking(self, x: Any, p: float) -> float:
+    def sticking(self, x: np.ndarray, p: float) -> float:
         """None: a series does not stick [s]."""
         return 0.0
 
-    def least_slip(self, x: Any, p: float) -> float:
+    def least_slip(self, x: np.ndarray, p: float) -> float:
         """Least sliding speed in the sense of V [m/s], by a parabola through the least of many samples."""
         field = self.balance(p).field
         fine = self.grid.even(16 * self.grid.samples)

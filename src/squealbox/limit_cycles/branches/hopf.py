@@ -19,9 +19,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.arguments import public
-from squealbox.family import Bounds, Family, Varied
+from squealbox.family import Bounds, DesignOrRecipe, Family, Varied
 from squealbox.friction import Table
 from squealbox.limit_cycles.cycles.field import Field
 from squealbox.limit_cycles.cycles.starting import steady_state
@@ -55,7 +56,7 @@ class HopfPoint(OneEigenvalue, Result):
             return "degenerate"
         return "supercritical" if self.lyapunov < 0.0 else "subcritical"
 
-    def amplitude(self, value: Any) -> Any:
+    def amplitude(self, value: ArrayLike) -> Any:
         """Predicted amplitude [m] of each degree of freedom at parameter values; NaN on the side without cycles."""
         square = -self.growth_slope * (np.asarray(value) - self.value) / (self.angular_frequency * self.lyapunov)
         half = len(self.shape) // 2
@@ -98,7 +99,7 @@ class HopfPoint(OneEigenvalue, Result):
 
 
 @public()
-def hopf_point(design: Any, parameter: Varied, bounds: Bounds | None = None) -> HopfPoint:
+def hopf_point(design: DesignOrRecipe, parameter: Varied, bounds: Bounds | None = None) -> HopfPoint:
     """The first Hopf point between `bounds` and the kind of cycle born there.
 
     Parameters
@@ -166,13 +167,13 @@ def critical_pair(field: Field, frequency: float) -> tuple[complex, Any, Any, An
     return complex(values[i]), q, p / np.conj(np.vdot(p, q)), steady
 
 
-def steady_modes(field: Field, steady: Any) -> Any:
+def steady_modes(field: Field, steady: np.ndarray) -> Any:
     """Modes of the contacts in steady sliding."""
     normal, speed = field.contact_state(steady)
     return np.where(field.unilateral & (normal <= 0.0), 2, np.where(speed >= 0.0, 1, -1))
 
 
-def lyapunov_coefficient(field: Field, steady: Any, frequency: float, q: Any, p: Any) -> float:
+def lyapunov_coefficient(field: Field, steady: np.ndarray, frequency: float, q: np.ndarray, p: np.ndarray) -> float:
     """l1 of the equation at the head of this module; `frequency` in rad/s, q and p its critical vectors."""
     normal, speed = field.contact_state(steady)
     closed = np.where(steady_modes(field, steady) == 2, 0.0, 1.0)
@@ -180,17 +181,17 @@ def lyapunov_coefficient(field: Field, steady: Any, frequency: float, q: Any, p:
     first, second, third = (closed * x for x in law_derivatives(field, speed))
     n = field.size
 
-    def parts(u: Any) -> tuple[Any, Any]:
+    def parts(u: np.ndarray) -> tuple[Any, Any]:
         return field.n @ u[:n], -field.t @ u[n:]
 
-    def along(force: Any) -> Any:
+    def along(force: np.ndarray) -> Any:
         return np.concatenate([np.zeros(n, dtype=complex), force @ field.md])
 
-    def bilinear(x: Any, y: Any) -> Any:
+    def bilinear(x: np.ndarray, y: np.ndarray) -> Any:
         (nx, vx), (ny, vy) = parts(x), parts(y)
         return along(first * (nx * vy + ny * vx) + sense * second * normal * vx * vy)
 
-    def trilinear(x: Any, y: Any, z: Any) -> Any:
+    def trilinear(x: np.ndarray, y: np.ndarray, z: np.ndarray) -> Any:
         (nx, vx), (ny, vy), (nz, vz) = parts(x), parts(y), parts(z)
         mixed = nx * vy * vz + ny * vx * vz + nz * vx * vy
         return along(sense * second * mixed + third * normal * vx * vy * vz)
@@ -203,7 +204,7 @@ def lyapunov_coefficient(field: Field, steady: Any, frequency: float, q: Any, p:
     return float(total.real / (2.0 * frequency))
 
 
-def law_derivatives(field: Field, speed: Any) -> tuple[Any, Any, Any]:
+def law_derivatives(field: Field, speed: np.ndarray) -> tuple[Any, Any, Any]:
     """mu', mu'' and mu''' of each contact at its speed, from a polynomial through the slope at Chebyshev points."""
     from numpy.polynomial import chebyshev
 

@@ -9,9 +9,10 @@ from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.arguments import public
-from squealbox.family import Bounds, Family, Varied
+from squealbox.family import Bounds, DesignOrRecipe, Family, Varied
 from squealbox.limit_cycles.branches.branch import Branch, branch
 from squealbox.limit_cycles.branches.joined import joined
 from squealbox.limit_cycles.cycles.cycle import Cycle
@@ -21,6 +22,7 @@ from squealbox.limit_cycles.cycles.shooting import shooting
 from squealbox.limit_cycles.cycles.starting import first_guess, steady_state
 from squealbox.limit_cycles.cycles.variation import fly
 from squealbox.parameters import ParameterError
+from squealbox.system import DesignOrSystem
 
 ALIKE = 1e-2  # of the size: extremes and period by which two settled motions are one cycle
 SWINGS = (0.3, 6.0)  # largest speeds of the starts, in sliding speeds
@@ -28,7 +30,7 @@ SWINGS = (0.3, 6.0)  # largest speeds of the starts, in sliding speeds
 
 @public()
 def settled_cycles(
-    design_or_system: Any, starts: Any = 16, *, settle: float | None = None, seed: int = 0
+    design_or_system: DesignOrSystem, starts: ArrayLike = 16, *, settle: float | None = None, seed: int = 0
 ) -> tuple[Cycle, ...]:
     """The stable cycles that runs from many states settle to, each once, the largest first.
 
@@ -52,7 +54,8 @@ def settled_cycles(
     [True]
     """
     field = field_of(design_or_system)
-    states = drawn_states(field, int(starts), seed) if np.ndim(starts) == 0 else np.asarray(starts, dtype=float)
+    given = np.asarray(starts, dtype=float)
+    states = drawn_states(field, int(given), seed) if given.ndim == 0 else given
     if states.ndim != 2 or states.shape[1] != 2 * field.system.size or not np.all(np.isfinite(states)):
         raise ParameterError(
             "settled_cycles", "starts", np.shape(starts), f"finite states, shape (k, {2 * field.system.size})"
@@ -83,7 +86,7 @@ def drawn_states(field: Autonomous, count: int, seed: int = 0) -> Any:
     return steady + states * wanted / np.where(speed > 0.0, speed, 1.0)
 
 
-def _settled(field: Autonomous, state: Any, settle: float | None, known: list[Cycle]) -> Cycle | None:
+def _settled(field: Autonomous, state: np.ndarray, settle: float | None, known: list[Cycle]) -> Cycle | None:
     """The cycle a run from `state` settles to, unless it is a known one or none."""
     half = field.system.size
     x, period, outcome = first_guess(field, (state[:half], state[half:]), settle)
@@ -100,7 +103,7 @@ def _settled(field: Autonomous, state: Any, settle: float | None, known: list[Cy
     return cycle
 
 
-def _alike(cycle: Any, period: Any, lowest: Any, highest: Any) -> bool:
+def _alike(cycle: Cycle, period: float | np.ndarray, lowest: np.ndarray, highest: np.ndarray) -> bool:
     """True when a motion has the period of the cycle, or a multiple of it, and its extremes."""
     turns = max(1.0, np.round(float(period / cycle.period)))
     size = 2.0 * np.max(cycle.amplitude)
@@ -110,12 +113,12 @@ def _alike(cycle: Any, period: Any, lowest: Any, highest: Any) -> bool:
 
 @public()
 def isolated_branches(
-    design: Any,
+    design: DesignOrRecipe,
     parameter: Varied,
     bounds: Bounds | None = None,
     *,
     values: Any = 3,
-    starts: Any = 12,
+    starts: int = 12,
     settle: float | None = None,
     known: tuple[Branch, ...] = (),
     seed: int = 0,

@@ -3,6 +3,8 @@
 from collections.abc import Callable, Sequence
 from typing import Any, Protocol, Self
 
+import numpy as np
+
 from squealbox.continuation import Path
 from squealbox.limit_cycles.cycles.cycle import Cycle
 from squealbox.system import System
@@ -18,19 +20,19 @@ class CyclePath(Path, Protocol):
     make: Callable[[Any], System]
     has_corners: bool
 
-    def multipliers(self, x: Any, p: float) -> Any:
+    def multipliers(self, x: np.ndarray, p: float) -> Any:
         """Floquet multipliers, the trivial one first."""
 
-    def least_slip(self, x: Any, p: float) -> float:
+    def least_slip(self, x: np.ndarray, p: float) -> float:
         """Least sliding speed in the sense of V [m/s]."""
 
-    def sticking(self, x: Any, p: float) -> float:
+    def sticking(self, x: np.ndarray, p: float) -> float:
         """Longest sticking of a contact [s]."""
 
-    def describe(self, x: Any, p: float) -> dict[str, Any]:
+    def describe(self, x: np.ndarray, p: float) -> dict[str, Any]:
         """All that a branch keeps of a point."""
 
-    def cycle(self, x: Any, p: float) -> Cycle:
+    def cycle(self, x: np.ndarray, p: float) -> Cycle:
         """The cycle at a point."""
 
     def confirmed(self, values: Sequence[float]) -> bool:

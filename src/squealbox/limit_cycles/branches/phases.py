@@ -73,7 +73,7 @@ def _state(field: Autonomous, cycle: Cycle, row: int, rtol: float) -> Any:
     return np.concatenate([run.q[-1], run.qd[-1]])
 
 
-def touches_event(path: ShootingPath, x: Any, p: float) -> bool:
+def touches_event(path: ShootingPath, x: np.ndarray, p: float) -> bool:
     """True when an event lies next to the beginning of the period."""
     times = path.run(x, p).event_time / float(x[-1])
     return bool(np.any(np.minimum(times, 1.0 - times) < TOUCHING))
@@ -91,7 +91,7 @@ def taken_up(path: ShootingPath, last: tuple[Any, float], earlier: tuple[Any, fl
     return other, x, p, heading(other, x, p, (cycle, before), earlier[1])
 
 
-def heading(path: ShootingPath, x: Any, p: float, cycles: tuple[Cycle, Cycle], before: float) -> Any:
+def heading(path: ShootingPath, x: np.ndarray, p: float, cycles: tuple[Cycle, Cycle], before: float) -> Any:
     """Direction in scaled variables from an earlier cycle at `before` to the one at p that begins at x."""
     cycle, earlier = cycles
     state = path.start(x)

@@ -9,12 +9,12 @@ function is the g of the bordered system (with r and l the null vectors at the s
 Source: Govaerts 2000, Numerical Methods for Bifurcations of Dynamical Equilibria, Sec. 3.2.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, cast
 
 import numpy as np
 
-from squealbox.family import Bounds, Family
+from squealbox.family import Bounds, DesignOrRecipe, Family
 from squealbox.limit_cycles.branches.curves import PointCurve, both_ways, curve_of, ending
 from squealbox.limit_cycles.branches.harmonic_path import HarmonicPath
 from squealbox.limit_cycles.branches.paths import CyclePath
@@ -23,13 +23,14 @@ from squealbox.limit_cycles.branches.shooting_path import ShootingPath
 from squealbox.limit_cycles.branches.special_points import EVENTS, BranchPoint
 from squealbox.limit_cycles.cycles.harmonic_balance import Grid
 from squealbox.parameters import ParameterError
+from squealbox.system import System
 
 PARAMETER_STEP = 1e-6  # of the range: differences of the path's residual
 TEST_STEP = 1e-5  # in scaled variables: differences of a test function
 
 
 def point_curve(
-    design: Any, bounds: Mapping[str, Bounds], point: BranchPoint, value: float, *, points: int = 60
+    design: DesignOrRecipe, bounds: Mapping[str, Bounds], point: BranchPoint, value: float, *, points: int = 60
 ) -> PointCurve:
     """Special points of cycles over two parameters: folds, grazing, period doubling or Neimark-Sacker.
 
@@ -70,7 +71,7 @@ def point_curve(
 class _Special:
     """Residual of a path and the test function of one kind of point, over the second parameter."""
 
-    def __init__(self, make: Any, point: BranchPoint, spans: Sequence[Bounds], value: float) -> None:
+    def __init__(self, make: Callable[..., System], point: BranchPoint, spans: Sequence[Bounds], value: float) -> None:
         (low, high), (bottom, top) = spans
         self.make, self.kind, self.span, settings = make, point.kind, high - low, point.settings
         self.span_b = top - bottom
@@ -91,14 +92,14 @@ class _Special:
         """The path at a value of the second parameter."""
         return self.path.again(lambda a: self.make(a, float(b)))
 
-    def residual(self, x: Any, b: float) -> Any:
+    def residual(self, x: np.ndarray, b: float) -> Any:
         """(residual of the path, test function); NaN outside the range of a parameter."""
         path = self.at(b)
         value = path.residual(x[:-1], float(x[-1]))
         test = self._test(path, x) if np.all(np.isfinite(value)) else np.nan
         return np.append(value, test)
 
-    def _test(self, path: CyclePath, x: Any) -> float:
+    def _test(self, path: CyclePath, x: np.ndarray) -> float:
         event = EVENTS[self.kind]
         if event.of != "along":
             told = event.test(getattr(path, event.of)(x[:-1], float(x[-1])))
@@ -107,10 +108,10 @@ class _Special:
         bordered = np.block([[square, self.left[:, None]], [self.right[None], np.zeros((1, 1))]])
         return float(np.linalg.solve(bordered, np.append(np.zeros(len(square)), 1.0))[-1])
 
-    def _square(self, path: CyclePath, x: Any) -> Any:
+    def _square(self, path: CyclePath, x: np.ndarray) -> Any:
         return path.jacobian(x[:-1], float(x[-1]))[0] * path.scale
 
-    def jacobian(self, x: Any, b: float) -> tuple[Any, Any]:
+    def jacobian(self, x: np.ndarray, b: float) -> tuple[Any, Any]:
         """Derivative of `residual` by x and by b; the test function's along the null space of the path's part only.
 
         What is left out is the test function's change across that space, by as much as the path's residual is away from
@@ -133,7 +134,7 @@ class _Special:
         total = np.vstack([known, row / scale])
         return total[:, :-1], total[:, -1]
 
-    def describe(self, x: Any, b: float) -> tuple[float, float]:
+    def describe(self, x: np.ndarray, b: float) -> tuple[float, float]:
         """Frequency [Hz]; these points have no Lyapunov coefficient here."""
         period = float(self.at(b).describe(x[:-1], float(x[-1]))["period"])
         return 1.0 / period, float("nan")

@@ -46,7 +46,7 @@ class ShootingPath:
         self.kept: dict[str, dict[Any, Any]] = {}
         self.column, self.scale, self.weight = 0, np.ones(1), np.ones(1)
 
-    def begin(self, x: Any, period: float, p: float, dof: int, amplitude: float) -> Any:
+    def begin(self, x: np.ndarray, period: float, p: float, dof: int, amplitude: float) -> Any:
         """Unknowns of a start x at which the velocity of `dof` is zero."""
         field = self.first = self.field(p)
         self.column = field.size + dof
@@ -80,7 +80,7 @@ class ShootingPath:
             other.motions.line, other.motions.known, other.motions.moving = None, [], other._moving
         return other
 
-    def _once(self, what: str, key: Any, made: Callable[[], Any]) -> Any:
+    def _once(self, what: str, key: float | bytes, made: Callable[[], Any]) -> Any:
         """What was made for a key, made at the first time."""
         kept = self.kept.setdefault(what, {})
         if key not in kept:
@@ -94,16 +94,16 @@ class ShootingPath:
         found: Autonomous = self._once("field", p, lambda: field_of(self.make(p)))
         return found
 
-    def start(self, x: Any) -> Any:
+    def start(self, x: np.ndarray) -> Any:
         """State (2n,) at which a point's period begins."""
         return np.concatenate([x[: self.column], [0.0], x[self.column : -1]])
 
-    def run(self, x: Any, p: float) -> Moved:
+    def run(self, x: np.ndarray, p: float) -> Moved:
         """The motion of a point over its period."""
         found: Moved = self._once("run", np.append(x, p).tobytes(), lambda: self._motion(x, p))
         return found
 
-    def _motion(self, x: Any, p: float, times: Any = None) -> Moved:
+    def _motion(self, x: np.ndarray, p: float, times: np.ndarray | None = None) -> Moved:
         """By the step that is ready for the family; by `simulate` where that cannot serve."""
         if self.motions is not None:
             try:
@@ -114,11 +114,11 @@ class ShootingPath:
                 return run
         return fly(self.field(p), self.start(x), float(x[-1]), self.rtol, times)
 
-    def fly(self, x: Any, p: float) -> tuple[Any, Flight]:
+    def fly(self, x: np.ndarray, p: float) -> tuple[Any, Flight]:
         """Start (2n,) and flight of a point."""
         return self.start(x), self._once("flight", np.append(x, p).tobytes(), lambda: self._derived(x, p))
 
-    def _derived(self, x: Any, p: float) -> Flight:
+    def _derived(self, x: np.ndarray, p: float) -> Flight:
         start, period, motion = self.start(x), float(x[-1]), self.run(x, p)
         found = self._by_differences(start, period, p, motion)
         if found is not None and (not isinstance(self.first, Field) or found.mismatch < CLOSE):
@@ -129,7 +129,7 @@ class ShootingPath:
         flown = by_differences(field, start, period, self.rtol, motion=motion)
         return replace(flown, by_p=change(start, period, self.rtol, beside))
 
-    def _by_differences(self, start: Any, period: float, p: float, motion: Any) -> Flight | None:
+    def _by_differences(self, start: np.ndarray, period: float, p: float, motion: Moved) -> Flight | None:
         """From many motions of the step that is ready; None where it cannot serve."""
         if self.motions is None or not isinstance(motion, MotionRows) or not motion.outcome.ok:
             return None
@@ -157,7 +157,7 @@ class ShootingPath:
         self.kept.clear()
         return False
 
-    def sequence(self, x: Any, p: float) -> tuple[tuple[int, int], ...] | None:
+    def sequence(self, x: np.ndarray, p: float) -> tuple[tuple[int, int], ...] | None:
         """(contact, new mode) of the events of a period, from a fixed first one on; None where there is no motion."""
         try:
             run = self.run(x, p) if x[-1] > 0.0 else None
@@ -168,7 +168,7 @@ class ShootingPath:
         events = [(int(c), int(m)) for c, m in zip(run.event_contact, run.event_mode, strict=True)]
         return min((tuple(events[i:] + events[:i]) for i in range(len(events))), default=())
 
-    def residual(self, x: Any, p: float) -> Any:
+    def residual(self, x: np.ndarray, p: float) -> Any:
         """Scaled x(T) - x(0), shape (2n,); NaN, which continuation refuses, where the parameter leaves its range."""
         nothing = np.full(len(x), np.nan)
         if not (np.all(np.isfinite(x)) and x[-1] > 0.0):
@@ -192,7 +192,7 @@ class ShootingPath:
         (low, first), (high, second) = ends
         return first, second, high - low
 
-    def jacobian(self, x: Any, p: float) -> tuple[Any, Any]:
+    def jacobian(self, x: np.ndarray, p: float) -> tuple[Any, Any]:
         """By the unknowns and by the parameter, saltation matrices included; the equation by p from differences."""
         _, flown = self.fly(x, p)
         size = flown.x.size
@@ -201,21 +201,21 @@ class ShootingPath:
         by_state = (flown.phi - np.eye(size))[:, np.arange(size) != self.column]
         return np.column_stack([by_state, flown.rate]) * self.weight[:, None], flown.by_p * self.weight
 
-    def describe(self, x: Any, p: float) -> dict[str, Any]:
+    def describe(self, x: np.ndarray, p: float) -> dict[str, Any]:
         """Period, extremes, multipliers, least sliding speed and longest sticking of the cycle at a point."""
         n, (low, high, _), start = self.first.system.size, self._looked_at(x, p), self.start(x)
         return {"period": float(x[-1]), "lowest": low, "highest": high, "multipliers": self.multipliers(x, p),
                 "least_slip": self.least_slip(x, p), "sticking": self.sticking(x, p),
                 "begin": np.concatenate([start[:n], start[self.first.size :][:n]])}  # fmt: skip
 
-    def _looked_at(self, x: Any, p: float) -> tuple[Any, Any, Any]:
+    def _looked_at(self, x: np.ndarray, p: float) -> tuple[Any, Any, Any]:
         """Least and largest displacement of each row that results know, and the sliding velocities met."""
         return self._once("look", np.append(x, p).tobytes(), lambda: self._looks(x, p))
 
-    def _looks(self, x: Any, p: float) -> tuple[Any, Any, Any]:
+    def _looks(self, x: np.ndarray, p: float) -> tuple[Any, Any, Any]:
         n, motion, speeds = self.first.system.size, self.run(x, p), []
 
-        def at(times: Any) -> tuple[Any, Any]:
+        def at(times: np.ndarray) -> tuple[Any, Any]:
             wanted, place = np.unique(np.append(times, np.linspace(0.0, x[-1], LOOKS)), return_inverse=True)
             run = self._motion(x, p, wanted)
             speeds.append(run.sliding_velocity)
@@ -224,23 +224,23 @@ class ShootingPath:
         low, high = refined(at, motion.t, motion.q[:, :n], motion.qd[:, :n], float(x[-1]))
         return low, high, np.vstack([motion.sliding_velocity, *speeds])
 
-    def multipliers(self, x: Any, p: float) -> Any:
+    def multipliers(self, x: np.ndarray, p: float) -> Any:
         """Floquet multipliers of the cycle at a point."""
         known = self._alone or not isinstance(self.first, Field)
         return (self.first if known else self.field(p)).multipliers(self.fly(x, p)[1].phi)
 
-    def least_slip(self, x: Any, p: float) -> float:
+    def least_slip(self, x: np.ndarray, p: float) -> float:
         """Least sliding speed in the sense of V [m/s] at many instants of the motion."""
         known = isinstance(self.run(x, p), MotionRows) and self.motions is not None
         V = self.motions.speeds(p) if known and self.motions else self.field(p).V
         return float(np.min(self._looked_at(x, p)[2] * np.sign(V), initial=np.inf))
 
-    def sticking(self, x: Any, p: float) -> float:
+    def sticking(self, x: np.ndarray, p: float) -> float:
         """Longest sticking of a contact [s]."""
         motion = self.run(x, p)
         return float(np.max((motion.mode[1:] == 0).T @ np.diff(motion.t), initial=0.0))
 
-    def cycle(self, x: Any, p: float) -> Cycle:
+    def cycle(self, x: np.ndarray, p: float) -> Cycle:
         """The cycle at a point, its multipliers computed anew to 1e-12; error is the scaled residual there."""
         start = self.start(x)
         field = self.field(p)

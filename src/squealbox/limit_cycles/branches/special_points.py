@@ -51,18 +51,18 @@ class BranchPoint(Cycle):
         return f"{where}, test function {float(self.test):.1e}, period {float(self.period):.8g} s"
 
 
-def doubling(multipliers: Any) -> float:
+def doubling(multipliers: np.ndarray) -> float:
     """prod (mu_i + 1): zero where a multiplier is -1."""
     return float(np.prod(multipliers[1:] + 1.0).real)
 
 
-def torus(multipliers: Any) -> float:
+def torus(multipliers: np.ndarray) -> float:
     """prod over pairs (mu_i mu_j - 1): zero with a complex pair on the unit circle, or a real pair of product 1."""
     pairs = itertools.combinations(multipliers[1:], 2)
     return float(np.prod([a * b - 1.0 for a, b in pairs]).real) if len(multipliers) > 2 else 1.0
 
 
-def is_torus(multipliers: Any) -> bool:
+def is_torus(multipliers: np.ndarray) -> bool:
     """True when the pair whose product is nearest to 1 is complex."""
     pairs = list(itertools.combinations(multipliers[1:], 2))
     a, _ = pairs[int(np.argmin([abs(a * b - 1.0) for a, b in pairs]))]
@@ -186,7 +186,7 @@ def candidates(seen: list[dict[str, Any]]) -> list[tuple[Event, int]]:
 
 
 def branch_point(
-    path: CyclePath, x: Any, p: float, kind: str, parameter: str, test: float, uncertainty: float
+    path: CyclePath, x: np.ndarray, p: float, kind: str, parameter: str, test: float, uncertainty: float
 ) -> BranchPoint:
     """The cycle at a point of a path, with its name and evidence."""
     cycle = path.cycle(x, p)

@@ -12,6 +12,7 @@ import numpy as np
 from squealbox.limit_cycles.branches.branch import Branch
 from squealbox.matrices import runs_of_true
 from squealbox.stability import complex_modes, critical_values
+from squealbox.system import DesignOrSystem
 
 NEUTRAL = 1e-6  # of a multiplier from the unit circle within which a cycle neither attracts nor repels
 GRID = 201  # values at which steady sliding is looked at, between its onsets
@@ -22,7 +23,7 @@ BESIDE = 0.5  # share of the way to an onset by which amplitude squared, gone on
 Stretch = tuple[float, float]
 
 
-def onsets(design: Any, parameter: str, bounds: Stretch) -> list[float]:
+def onsets(design: DesignOrSystem, parameter: str, bounds: Stretch) -> list[float]:
     """Values at which steady sliding changes its stability, in rising order."""
     return [float(one.value) for one in critical_values(design, parameter, bounds).changes]
 

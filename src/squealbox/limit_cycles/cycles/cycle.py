@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.result import Array, Result, optional, quantity
 from squealbox.system import System
@@ -118,7 +119,7 @@ class Cycle(Result):
         return self.warned([said])
 
 
-def stability_of(multipliers: Any, error: float = 0.0) -> str:
+def stability_of(multipliers: np.ndarray, error: float = 0.0) -> str:
     """One of stable, unstable, or neutral where the largest lies on the unit circle as far as it is known.
 
     `error` is by how much another multiplier, the trivial one, is seen to be off.
@@ -127,7 +128,7 @@ def stability_of(multipliers: Any, error: float = 0.0) -> str:
     return "stable" if largest < 1.0 - known else "neutral" if largest <= 1.0 + known else "unstable"
 
 
-def ordered(multipliers: Any) -> Any:
+def ordered(multipliers: ArrayLike) -> Any:
     """Multipliers with the one nearest to 1 first, the others by falling size."""
     values = np.asarray(multipliers, dtype=complex)
     if not np.all(np.isfinite(values)):
@@ -137,7 +138,7 @@ def ordered(multipliers: Any) -> Any:
     return np.r_[values[trivial], others[np.argsort(-np.abs(others), kind="stable")]]
 
 
-def extremes(t: Any, q: Any, qd: Any) -> tuple[Any, Any]:
+def extremes(t: np.ndarray, q: np.ndarray, qd: np.ndarray) -> tuple[Any, Any]:
     """Least and largest displacement of each column, by the Hermite cubic of each interval; error of order h^4."""
     low, high = np.min(q, axis=0), np.max(q, axis=0)
     if len(t) < 2:
@@ -147,7 +148,7 @@ def extremes(t: Any, q: Any, qd: Any) -> tuple[Any, Any]:
     return low, high
 
 
-def _turning(t: Any, q: Any, qd: Any) -> Iterator[tuple[Any, Any]]:
+def _turning(t: np.ndarray, q: np.ndarray, qd: np.ndarray) -> Iterator[tuple[Any, Any]]:
     """Values and instants at which the Hermite cubics turn, the two of each interval; its beginning where none does."""
     h = np.diff(t)[:, None]
     a, v0, v1 = q[:-1], qd[:-1] * h, qd[1:] * h
@@ -160,7 +161,9 @@ def _turning(t: Any, q: Any, qd: Any) -> Iterator[tuple[Any, Any]]:
         yield a + s * (v0 + s * (c2 + s * c3)), t[:-1, None] + s * h
 
 
-def refined(at: Callable[[Any], tuple[Any, Any]], t: Any, q: Any, qd: Any, period: float) -> tuple[Any, Any]:
+def refined(
+    at: Callable[[Any], tuple[Any, Any]], t: np.ndarray, q: np.ndarray, qd: np.ndarray, period: float
+) -> tuple[Any, Any]:
     """As `extremes` of one period, looked at once more where its cubics turn: error of 1e-9 of the swing.
 
     at : gives displacements and velocities (k, n) at instants (k,)

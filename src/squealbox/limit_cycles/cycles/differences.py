@@ -19,7 +19,7 @@ WAYS = np.array([[1.0], [-1.0], [2.0], [-2.0], [4.0], [-4.0]])
 ALIKE = 1e-9  # two extrapolations, of their largest entry
 
 
-def by_differences(field: Autonomous, x: Any, duration: float, rtol: float = 1e-13, *, motion: Moved) -> Flight:
+def by_differences(field: Autonomous, x: np.ndarray, duration: float, rtol: float = 1e-13, *, motion: Moved) -> Flight:
     """As `variation.flight`, to some 1e-10 of the largest entry.
 
     motion : that of `fly`, which reached the end
@@ -29,12 +29,12 @@ def by_differences(field: Autonomous, x: Any, duration: float, rtol: float = 1e-
     return Flight(states[-1], field.rate(states[-1], motion.mode[-1]), phi, motion, mismatch)
 
 
-def size_of(field: Autonomous, states: Any) -> float:
+def size_of(field: Autonomous, states: np.ndarray) -> float:
     """The largest swing in a motion [m/s]."""
     return float(np.max(np.ptp(states, axis=0) * field.scale)) or float(np.max(np.abs(field.V), initial=0.0)) or 1.0
 
 
-def extrapolated(flow: Callable[[Any], Ends], x: Any, scale: Any, size: float) -> tuple[Any, float]:
+def extrapolated(flow: Callable[[Any], Ends], x: np.ndarray, scale: np.ndarray, size: float) -> tuple[Any, float]:
     """The derivative of an end by its start and by what else x (m,) holds behind that; and its mismatch.
 
     flow : leads many x (k, m) to their `Ends`; scale (m,) : what makes values of `size` of those of x
@@ -57,7 +57,9 @@ def extrapolated(flow: Callable[[Any], Ends], x: Any, scale: Any, size: float) -
     return best, mismatch
 
 
-def derived(field: Autonomous, x: Any, duration: float, rtol: float = 1e-13, *, motion: Moved | None = None) -> Flight:
+def derived(
+    field: Autonomous, x: np.ndarray, duration: float, rtol: float = 1e-13, *, motion: Moved | None = None
+) -> Flight:
     """The motion and its derivative: by the equation where `field` is one, else by differences."""
     motion = fly(field, x, duration, rtol) if motion is None else motion
     if isinstance(field, Field):
@@ -65,7 +67,7 @@ def derived(field: Autonomous, x: Any, duration: float, rtol: float = 1e-13, *, 
     return by_differences(field, x, duration, rtol, motion=motion)
 
 
-def change(x: Any, duration: float, rtol: float, beside: tuple[Any, Any, float]) -> Any:
+def change(x: np.ndarray, duration: float, rtol: float, beside: tuple[Any, Any, float]) -> Any:
     """How the end (2n,) changes with a parameter, from fields at two of its values and their distance."""
     ends = []
     for each in beside[:2]:

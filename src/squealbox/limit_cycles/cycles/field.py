@@ -21,7 +21,7 @@ from squealbox.matrices import Equilibrium
 from squealbox.memory_rows import no_memory
 from squealbox.parameters import ParameterError
 from squealbox.schedules import Constant, Schedule, value_at
-from squealbox.system import InvalidSystem, System, as_system, equilibrium
+from squealbox.system import DesignOrSystem, InvalidSystem, System, as_system, equilibrium
 from squealbox.transient import (
     SCHEMES,
     WITH_MASS,
@@ -39,7 +39,7 @@ OPEN = 2
 SMOOTHINGS = ("tanh", "arctan")
 
 
-def smoothed_sign(v: Any, width: float, kind: str) -> tuple[Any, Any]:
+def smoothed_sign(v: np.ndarray, width: float, kind: str) -> tuple[Any, Any]:
     """The smooth sgn(v) [-] and its derivative [s/m]; kind is "tanh" or "arctan"."""
     r = v / width
     if kind == "tanh":
@@ -70,7 +70,7 @@ def remembers_nothing(system: System) -> None:
         )
 
 
-def q_and_qd(design_or_system: Any) -> System:
+def q_and_qd(design_or_system: DesignOrSystem) -> System:
     """The system of a design whose states are q and q' alone; `InvalidSystem` for another."""
     system = as_system(design_or_system)
     check_states(system)
@@ -106,7 +106,7 @@ class Autonomous:
             self._flows[method] = Flows([self.held_fast], taken, SCHEMES[self.contact], self.width, duration)
         return self._flows[method]
 
-    def contact_state(self, x: Any) -> tuple[Any, Any]:
+    def contact_state(self, x: np.ndarray) -> tuple[Any, Any]:
         """Normal force [N] and sliding velocity [m/s] of each contact."""
         return self.N0 + x[..., : self.size] @ self.n.T, self.V - x[..., self.size :] @ self.t.T
 
@@ -114,11 +114,11 @@ class Autonomous:
         """Steady sliding of the rows that results know."""
         return equilibrium(self.held_fast)
 
-    def state(self, q: Any, qd: Any, memory: Any = None) -> Any:
+    def state(self, q: np.ndarray, qd: np.ndarray, memory: np.ndarray | None = None) -> Any:
         """State of displacements and velocities (n,), with what is remembered beside them where that is known."""
         raise NotImplementedError
 
-    def rate(self, x: Any, mode: Any) -> Any:
+    def rate(self, x: np.ndarray, mode: np.ndarray) -> Any:
         """x' at a state, with the contacts in the modes (contacts,)."""
         raise NotImplementedError
 
@@ -130,7 +130,7 @@ class Autonomous:
         """Angular frequencies [rad/s] and shapes (n, modes) of the system without contacts."""
         raise NotImplementedError
 
-    def multipliers(self, monodromy: Any) -> Any:
+    def multipliers(self, monodromy: np.ndarray) -> Any:
         """Floquet multipliers, as `ordered` puts them; NaN where unknown."""
         raise NotImplementedError
 
@@ -157,7 +157,7 @@ class Field(Autonomous):
         self.same = bool(self.laws) and all(law == self.laws[0] for law in self.laws)
         self._holds: dict[tuple[int, ...], Any] = {}
 
-    def state(self, q: Any, qd: Any, memory: Any = None) -> Any:
+    def state(self, q: np.ndarray, qd: np.ndarray, memory: np.ndarray | None = None) -> Any:
         return np.concatenate([q, qd])
 
     def own_modes(self) -> tuple[Any, Any]:
@@ -170,14 +170,14 @@ class Field(Autonomous):
         none = np.zeros(self.rest.shape)
         return np.block([[self.rest, none], [none, self.rest]])
 
-    def multipliers(self, monodromy: Any) -> Any:
+    def multipliers(self, monodromy: np.ndarray) -> Any:
         """Floquet multipliers of the motion beside a free common one, as `ordered` puts them; NaN where unknown."""
         inside = monodromy if self.held_fast is self.system else self.beside.T @ monodromy @ self.beside
         if not np.all(np.isfinite(inside)):
             return np.full(len(inside), np.nan)
         return ordered(np.linalg.eigvals(inside))
 
-    def coefficients(self, v: Any) -> tuple[Any, Any]:
+    def coefficients(self, v: np.ndarray) -> tuple[Any, Any]:
         """mu and dmu/d|v| of each contact at speeds v (..., contacts) of either sign."""
         if self.same:
             return self.laws[0].mu(v), self.laws[0].slope_at(v)
@@ -186,7 +186,7 @@ class Field(Autonomous):
         empty = np.zeros(np.shape(v))
         return (np.stack(mu, -1), np.stack(slope, -1)) if mu else (empty, empty)
 
-    def forces(self, x: Any, mode: Any) -> tuple[Any, Any, Any, Any]:
+    def forces(self, x: np.ndarray, mode: np.ndarray) -> tuple[Any, Any, Any, Any]:
         """F, dF/dN, dF/dv of the contacts that slip and the mask of open ones; F of a sticking contact is 0 here."""
         normal, v = self.contact_state(x)
         if self.contact == "exact":
@@ -203,7 +203,7 @@ class Field(Autonomous):
         by_speed = (slope * np.sign(v) * sign + mu * steep) * normal
         return mu * sign * normal * closed, mu * sign * closed, by_speed * closed, opened
 
-    def rate(self, x: Any, mode: Any) -> Any:
+    def rate(self, x: np.ndarray, mode: np.ndarray) -> Any:
         """x' = f(x), shape (2n,)."""
         force, _, _, opened = self.forces(x, mode)
         q, qd = x[: self.size], x[self.size :]
@@ -212,7 +212,7 @@ class Field(Autonomous):
             a = a + (self.contact_state(x)[0] * opened) @ self.mw
         return np.concatenate([qd, a + self.held(mode, a)])
 
-    def rates(self, states: Any, mode: Any) -> Any:
+    def rates(self, states: np.ndarray, mode: np.ndarray) -> Any:
         """x' at states (k, 2n) in the modes (m,) or (k, m), shape (k, 2n)."""
         force, _, _, opened = self.forces(states, mode)
         q, qd = states[:, : self.size], states[:, self.size :]
@@ -223,12 +223,12 @@ class Field(Autonomous):
             a[rows] -= a[rows] @ hold.T
         return np.hstack([qd, a])
 
-    def held(self, mode: Any, a: Any) -> Any:
+    def held(self, mode: np.ndarray, a: np.ndarray) -> Any:
         """What the sticking contacts add to accelerations a (n,) or to the columns of a matrix (n, k)."""
         stuck = self.sticking(mode)
         return -(self._hold(stuck) @ a) if stuck.size else 0.0
 
-    def _hold(self, stuck: Any) -> Any:
+    def _hold(self, stuck: np.ndarray) -> Any:
         """M^-1 d G^-1 t' over the sticking contacts, shape (n, n); those that hold the same motion share."""
         key = tuple(stuck)
         if key not in self._holds:
@@ -236,7 +236,7 @@ class Field(Autonomous):
             self._holds[key] = md.T @ np.linalg.pinv(t @ md.T, rcond=1e-12) @ t
         return self._holds[key]
 
-    def _holding_rows(self, mode: Any) -> list[tuple[Any, Any]]:
+    def _holding_rows(self, mode: np.ndarray) -> list[tuple[Any, Any]]:
         """Which of the rows with modes (m,) or (k, m) stick alike, and what holds them."""
         if self.contact != "exact":
             return []
@@ -249,22 +249,22 @@ class Field(Autonomous):
             alike = [(slice(i, k), np.flatnonzero(held[i])) for i, k in zip(begins, ends, strict=True)]
         return [(rows, self._hold(stuck)) for rows, stuck in alike if stuck.size]
 
-    def sticking(self, mode: Any) -> Any:
+    def sticking(self, mode: np.ndarray) -> Any:
         """Indices of the sticking contacts."""
         return np.flatnonzero(np.equal(mode, 0)) if self.contact == "exact" else np.zeros(0, dtype=int)
 
-    def _holding(self, stuck: Any, a: Any) -> Any:
+    def _holding(self, stuck: np.ndarray, a: np.ndarray) -> Any:
         """Forces -G^-1 t'a; contacts that hold the same motion share (least squares)."""
         return -np.linalg.lstsq(self.t[stuck] @ self.md[stuck].T, self.t[stuck] @ a, rcond=1e-12)[0]
 
-    def jacobian(self, x: Any, mode: Any) -> Any:
+    def jacobian(self, x: np.ndarray, mode: np.ndarray) -> Any:
         """df/dx, shape (2n, 2n)."""
         by_q, by_v = self._free_jacobian(x, mode)
         free = np.hstack([by_q, by_v])
         n = self.size
         return np.vstack([np.hstack([np.zeros((n, n)), np.eye(n)]), free + self.held(mode, free)])
 
-    def jacobians(self, states: Any, mode: Any) -> Any:
+    def jacobians(self, states: np.ndarray, mode: np.ndarray) -> Any:
         """df/dx at states (k, 2n) with modes (m,) or (k, m), shape (k, 2n, 2n)."""
         n = self.size
         _, by_normal, by_speed, opened = self.forces(states, mode)
@@ -278,14 +278,14 @@ class Field(Autonomous):
             out[rows, n:] -= hold @ out[rows, n:]
         return out
 
-    def _free_jacobian(self, x: Any, mode: Any) -> tuple[Any, Any]:
+    def _free_jacobian(self, x: np.ndarray, mode: np.ndarray) -> tuple[Any, Any]:
         _, by_normal, by_speed, opened = self.forces(x, mode)
         by_q = -self.mk + self.md.T @ (by_normal[:, None] * self.n)
         if np.any(opened):
             by_q = by_q + self.mw.T @ (opened[:, None] * self.n)
         return by_q, -self.mc - self.md.T @ (by_speed[:, None] * self.t)
 
-    def holding_force(self, x: Any, mode: Any, contact: int) -> tuple[float, Any]:
+    def holding_force(self, x: np.ndarray, mode: np.ndarray, contact: int) -> tuple[float, Any]:
         """Force [N] a sticking contact carries, and its gradient (2n,)."""
         stuck = self.sticking(mode)
         at = int(np.flatnonzero(stuck == contact)[0])

@@ -12,7 +12,7 @@ Source: Leine and Nijmeijer 2004, Dynamics and Bifurcations of Non-Smooth Mechan
 """
 
 import itertools
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any, ClassVar
@@ -37,8 +37,8 @@ from squealbox.limit_cycles.cycles.variation import (
 from squealbox.parameters import ParameterError
 from squealbox.result import COMPLETED, Array, Outcome, Result, quantity
 from squealbox.schedules import Constant, Schedule, Sinusoid, value_at
-from squealbox.start import Start
-from squealbox.system import System, as_system, equilibrium
+from squealbox.start import Start, StartLike
+from squealbox.system import DesignOrSystem, System, as_system, equilibrium
 from squealbox.transient import Method, Trajectory, simulate
 from squealbox.words import sizes_told
 
@@ -122,7 +122,7 @@ class Moving(Field):
         self.inverse = np.linalg.inv(system.M)
         self.at(time)
 
-    def at(self, time: Any) -> "Moving":
+    def at(self, time: float | np.ndarray) -> "Moving":
         """The same field at another instant [s], or for `jacobians` at instants (k,)."""
         rows, shape = self.moving.contacts, np.shape(time)
         self.N0, self.V = (
@@ -134,15 +134,15 @@ class Moving(Field):
             self.mf = self.inverse @ np.asarray(value_at(self.moving.load, time))
         return self
 
-    def _holding(self, stuck: Any, a: Any) -> Any:
+    def _holding(self, stuck: np.ndarray, a: np.ndarray) -> Any:
         own = self.t[stuck] @ a - (self.rising[stuck] if np.ndim(a) == 1 else 0.0)
         return -np.linalg.lstsq(self.t[stuck] @ self.md[stuck].T, own, rcond=1e-12)[0]
 
 
 @public()
 def forced_cycle(
-    design_or_system: Any,
-    start: Any = None,
+    design_or_system: DesignOrSystem,
+    start: StartLike = None,
     *,
     rounds: int = 1,
     rtol: float = 1e-12,
@@ -197,7 +197,12 @@ def forced_cycle(
     return _made(design_or_system, settings, period, motion, np.full(x.size, np.nan), history[-1], events, outcome)
 
 
-def forced_branch(family: Any, values: Any, start: Any = None, **keywords: Any) -> Iterator[ForcedCycle]:
+def forced_branch(
+    family: Callable[[float], DesignOrSystem],
+    values: Sequence[float] | np.ndarray,
+    start: StartLike = None,
+    **keywords: Any,
+) -> Iterator[ForcedCycle]:
     """Forced motions over a parameter such as amplitude or frequency: `family(value)` is the brake.
 
     An iterator: each motion starts from the last that was found, and one that is not found does not end it.
@@ -210,8 +215,8 @@ def forced_branch(family: Any, values: Any, start: Any = None, **keywords: Any) 
 
 
 def forced_path(
-    family: Any, bounds: tuple[float, float], begin: float, start: Any = None, *, direction: float = 1.0,
-    first: float = 0.02, largest: float = 0.1, most_points: int = 500, rtol: float = 1e-10,
+    family: Callable[[float], DesignOrSystem], bounds: tuple[float, float], begin: float, start: StartLike = None,
+    *, direction: float = 1.0, first: float = 0.02, largest: float = 0.1, most_points: int = 500, rtol: float = 1e-10,
 ) -> Iterator[tuple[float, ForcedCycle]]:  # fmt: skip
     """Forced motions along a parameter such as amplitude or frequency, by arclength: through folds.
 
@@ -245,16 +250,16 @@ def forced_path(
     unit = np.max(np.abs(np.hstack([found.q, found.qd])), axis=0)
     unit = np.where(unit > 0.0, unit, float(np.max(unit)) or 1.0)
 
-    def end(x: Any, p: float) -> Any:
+    def end(x: np.ndarray, p: float) -> Any:
         system = as_system(family(float(p)))
         period, n = common_period(system), system.size
         motion = simulate(system, period, (x[:n], x[n:]), [0.0, period], _method(system, x, period, rtol))
         return np.concatenate([motion.q[-1], motion.qd[-1]]) if motion.outcome.ok else np.full(x.shape, np.nan)
 
-    def residual(x: Any, p: float) -> Any:
+    def residual(x: np.ndarray, p: float) -> Any:
         return (end(x, p) - x) / unit
 
-    def jacobian(x: Any, p: float) -> tuple[Any, Any]:
+    def jacobian(x: np.ndarray, p: float) -> tuple[Any, Any]:
         system, step = as_system(family(float(p))), 1e-5 * (high - low)
         phi = _flight(system, x, common_period(system), rtol)[2]
         by_p = (end(x, p + step) - end(x, p - step)) / (2.0 * step)
@@ -293,7 +298,7 @@ def common_period(system: System) -> float:
     return float(np.lcm.reduce([ratio.denominator for ratio in ratios])) / base
 
 
-def _flight(system: System, x: Any, period: float, rtol: float) -> tuple[Trajectory, Any, Any, int]:
+def _flight(system: System, x: np.ndarray, period: float, rtol: float) -> tuple[Trajectory, Any, Any, int]:
     """The motion over one period, its end, its derivative by the start, and the number of events.
 
     The derivative as in `variation.flight`: Magnus steps of order 4 and half as long ones, extrapolated.
@@ -319,14 +324,14 @@ def _flight(system: System, x: Any, period: float, rtol: float) -> tuple[Traject
     return motion, states[-1], extrapolated(coarse, fine), len(rows) - 2
 
 
-def _method(system: System, x: Any, period: float, rtol: float) -> Method:
+def _method(system: System, x: np.ndarray, period: float, rtol: float) -> Method:
     speed = float(np.max(np.abs(x[system.size :]), initial=0.0)) + max(
         (abs(float(value_at(c.V, 0.0))) for c in system.contacts), default=0.0
     )
     return Method("dormand-prince-8", rtol=rtol, atol=1e-2 * rtol * (speed or 1.0), largest_step=period / 20.0)
 
 
-def _jump(field: Moving, x: Any, before: Any, after: Any, time: float, period: float) -> Any:
+def _jump(field: Moving, x: np.ndarray, before: np.ndarray, after: np.ndarray, time: float, period: float) -> Any:
     """Saltation at a surface that moves."""
     own = np.flatnonzero(np.not_equal(before, after))
     field.at(time)
@@ -348,7 +353,7 @@ def _frozen(system: System, time: float) -> System:
     return system.replace(contacts=contacts, load=np.asarray(value_at(system.load, time), dtype=float))
 
 
-def _start(system: System, start: Any) -> Any:
+def _start(system: System, start: StartLike) -> Any:
     if start is not None:
         return Start.of("forced_cycle", start, system).state
     steady = equilibrium(_frozen(system, 0.0)) if not any(isinstance(c.V, Schedule) for c in system.contacts) else None
@@ -357,8 +362,8 @@ def _start(system: System, start: Any) -> Any:
 
 
 def _made(
-    design: Any, settings: dict[str, Any], period: float, motion: Trajectory, values: Any, error: float, events: int,
-    outcome: Outcome,
+    design: DesignOrSystem, settings: dict[str, Any], period: float, motion: Trajectory, values: np.ndarray,
+    error: float, events: int, outcome: Outcome,
 ) -> ForcedCycle:  # fmt: skip
     return ForcedCycle(
         period=np.asarray(period), t=motion.t, q=motion.q, qd=motion.qd, mode=motion.mode, multipliers=values,

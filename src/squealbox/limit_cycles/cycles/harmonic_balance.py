@@ -13,7 +13,7 @@ series. A series that only has every m-th harmonic goes round m times in its per
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
@@ -26,7 +26,11 @@ from squealbox.limit_cycles.cycles.starting import first_guess
 from squealbox.limit_cycles.cycles.variation import fly, magnus
 from squealbox.parameters import ParameterError, known_names
 from squealbox.result import COMPLETED, Outcome
-from squealbox.system import as_system
+from squealbox.start import StartLike
+from squealbox.system import DesignOrSystem, as_system
+
+if TYPE_CHECKING:
+    from squealbox.transient import Trajectory
 
 LARGEST = 512  # harmonics; beyond this a smoothed cycle is better found by shooting
 ABSENT = 1e-9  # of the largest harmonic: Newton's method leaves less than its tolerance
@@ -39,8 +43,8 @@ Guess: TypeAlias = "Callable[[Grid], Any]"
 
 @public()
 def harmonic_balance(
-    design_or_system: Any,
-    start: Any = None,
+    design_or_system: DesignOrSystem,
+    start: StartLike = None,
     *,
     contact: str = "exact",
     width: float = 1e-3,
@@ -100,19 +104,19 @@ def harmonic_balance(
     return cycle_of(done[0], done[1], done[2], done[3], settings, done[4])
 
 
-def rounds_of(coefficients: Any) -> int:
+def rounds_of(coefficients: np.ndarray) -> int:
     """How often the motion of a series goes round in its period: the common divisor of the harmonics it has."""
     sizes = np.linalg.norm(coefficients[1:].reshape(-1, 2 * coefficients.shape[1]), axis=1)
     return int(np.gcd.reduce(1 + np.flatnonzero(sizes > ABSENT * np.max(sizes)))) or 1
 
 
-def once_round(coefficients: Any, rounds: int) -> Any:
+def once_round(coefficients: np.ndarray, rounds: int) -> Any:
     """The series of one of the rounds."""
     pairs = coefficients[1:].reshape(-1, 2, coefficients.shape[1])[rounds - 1 :: rounds]
     return np.concatenate([coefficients[:1], pairs.reshape(-1, coefficients.shape[1])])
 
 
-def _guess(field: Field, x: Any, period: float, found: Outcome) -> tuple[Guess, Outcome]:
+def _guess(field: Field, x: np.ndarray, period: float, found: Outcome) -> tuple[Guess, Outcome]:
     """The series, on any grid, of the motion from x over a period; of rest at x where there is none, and then why."""
     run = fly(field, x, period, 1e-9) if found.ok else None
     if run is None or not run.outcome.ok:
@@ -130,12 +134,12 @@ def _guess(field: Field, x: Any, period: float, found: Outcome) -> tuple[Guess, 
     return along, found
 
 
-def _closes(run: Any) -> bool:
+def _closes(run: "Trajectory") -> bool:
     """Whether a motion of one period is the cycle, to what a first guess knows."""
     return bool(np.all(np.abs(run.q[-1] - run.q[0]) <= CLOSED * max(float(np.max(np.ptp(run.q, axis=0))), 1e-300)))
 
 
-def _reverses(field: Field, modes: Any) -> bool:
+def _reverses(field: Field, modes: np.ndarray) -> bool:
     """Whether a contact sticks, or slips against its belt, in any of the modes (k, m)."""
     return bool(np.any((modes == 0) | (modes == np.where(field.V >= 0.0, -1, 1))))
 
@@ -189,24 +193,24 @@ class Grid:
             self._kept[count, offset] = values, values @ self.d
         return self._kept[count, offset]
 
-    def at(self, tau: Any) -> Any:
+    def at(self, tau: np.ndarray) -> Any:
         """E at the phases tau: columns 1, cos tau, sin tau, cos 2 tau, ..."""
         angles = np.multiply.outer(tau, np.arange(1, self.harmonics + 1))
         both = np.stack([np.cos(angles), np.sin(angles)], axis=-1).reshape(len(tau), -1)
         return np.hstack([np.ones((len(tau), 1)), both])
 
-    def series(self, samples: Any) -> Any:
+    def series(self, samples: np.ndarray) -> Any:
         """Coefficients (2H + 1, n) of values (N, n)."""
         return self.inverse @ samples
 
-    def padded(self, coefficients: Any) -> Any:
+    def padded(self, coefficients: np.ndarray) -> Any:
         """Coefficients of fewer harmonics, with zeros for the rest; of more harmonics, cut."""
         out = np.zeros((2 * self.harmonics + 1, coefficients.shape[1]))
         rows = min(len(out), len(coefficients))
         out[:rows] = coefficients[:rows]
         return out
 
-    def shifted(self, coefficients: Any, phase: float) -> Any:
+    def shifted(self, coefficients: np.ndarray, phase: float) -> Any:
         """Coefficients of the same motion begun `phase` later."""
         return self.inverse @ (self.at(self.tau + phase) @ coefficients)
 
@@ -218,16 +222,16 @@ class Balance:
     field: Field
     grid: Grid
 
-    def motion(self, coefficients: Any, omega: float, at: tuple[Any, Any] | None = None) -> Any:
+    def motion(self, coefficients: np.ndarray, omega: float, at: tuple[Any, Any] | None = None) -> Any:
         """States x (N, 2n) at the instants of the grid, or where E and E D are given."""
         values, slopes = (self.grid.values, self.grid.slopes) if at is None else at
         return np.hstack([values @ coefficients, omega * (slopes @ coefficients)])
 
-    def modes(self, states: Any) -> Any:
+    def modes(self, states: np.ndarray) -> Any:
         """Sense of slip of each contact: that of V, so a series that passes a reversal still has a smooth residual."""
         return np.broadcast_to(np.where(self.field.V >= 0.0, 1, -1), (*states.shape[:-1], len(self.field.V)))
 
-    def residual(self, coefficients: Any, omega: float) -> tuple[Any, Any]:
+    def residual(self, coefficients: np.ndarray, omega: float) -> tuple[Any, Any]:
         """R (2H + 1, n) over the mass [m/s^2], and the states behind it."""
         field, grid = self.field, self.grid
         states = self.motion(coefficients, omega)
@@ -239,7 +243,7 @@ class Balance:
         inertia = omega * (grid.d @ slope)
         return inertia + slope @ field.mc.T + coefficients @ field.mk.T - grid.inverse @ push, states
 
-    def jacobian(self, coefficients: Any, omega: float, states: Any) -> tuple[Any, Any]:
+    def jacobian(self, coefficients: np.ndarray, omega: float, states: np.ndarray) -> tuple[Any, Any]:
         """dR/dQ as (size, size) with Q raveled by rows, and dR/domega (size,)."""
         field, grid = self.field, self.grid
         d, rows, n = grid.d, len(grid.d), field.size
@@ -261,7 +265,7 @@ class Balance:
                 total -= np.einsum("ab,ij->aibj", part, np.outer(field.mw[c], field.n[c]))
         return total.reshape(rows * n, rows * n), by_omega.ravel()
 
-    def solve(self, guess: Any, omega: float, most: int = 40) -> tuple[Any, float, Outcome]:
+    def solve(self, guess: np.ndarray, omega: float, most: int = 40) -> tuple[Any, float, Outcome]:
         """Newton with halved steps; the phase is turned so that b_h of the largest harmonic is zero."""
         coefficients, column = self.turned(guess)
         history: list[float] = []
@@ -290,7 +294,9 @@ class Balance:
         norm = float(np.linalg.norm(value)) / scale
         return coefficients, float(omega), self._judged(norm, history, coefficients, omega, states)
 
-    def _judged(self, norm: float, history: list[float], coefficients: Any, omega: float, states: Any) -> Outcome:
+    def _judged(
+        self, norm: float, history: list[float], coefficients: np.ndarray, omega: float, states: np.ndarray
+    ) -> Outcome:
         if not norm < 1e-9:
             message = f"Newton's method stopped at a relative residual of {norm:.3g}: {ADVICE}"
             return Outcome("no_convergence", message, history=history, advice=ADVICE)
@@ -302,7 +308,7 @@ class Balance:
             return Outcome("sticking", STICKS, history=history, advice=ADVICE)
         return Outcome(COMPLETED, "", history=history)
 
-    def turned(self, coefficients: Any) -> tuple[Any, int]:
+    def turned(self, coefficients: np.ndarray) -> tuple[Any, int]:
         """The series begun where the largest harmonic of any displacement has b_h = 0 < a_h; the place of that b_h."""
         a, b = coefficients[1::2], coefficients[2::2]
         h, dof = np.unravel_index(int(np.argmax(np.hypot(a, b))), a.shape)
@@ -310,12 +316,12 @@ class Balance:
         turned[2 * h + 2, dof] = 0.0
         return turned, int((2 * h + 2) * coefficients.shape[1] + dof)
 
-    def tail(self, coefficients: Any) -> float:
+    def tail(self, coefficients: np.ndarray) -> float:
         """Share of the last quarter of harmonics in the motion [-]."""
         rows = max(2, 2 * (self.grid.harmonics // 4))
         return float(np.max(np.linalg.norm(coefficients[-rows:], axis=0) / np.linalg.norm(coefficients[1:])))
 
-    def monodromy(self, coefficients: Any, omega: float, steps: int | None = None) -> Any:
+    def monodromy(self, coefficients: np.ndarray, omega: float, steps: int | None = None) -> Any:
         """Phi over one period by fourth-order Magnus exponentials at two Gauss points of each step, shape (2n, 2n)."""
         steps = steps or max(256, self.grid.samples)
         h, beside = 2.0 * np.pi / steps, float(np.sqrt(3.0) / 6.0)
@@ -325,7 +331,7 @@ class Balance:
 
 
 def cycle_of(
-    balance: Balance, coefficients: Any, omega: float, outcome: Outcome, settings: dict[str, Any], error: float
+    balance: Balance, coefficients: np.ndarray, omega: float, outcome: Outcome, settings: dict[str, Any], error: float
 ) -> Cycle:
     """The cycle behind a series, on a fine grid."""
     field, grid = balance.field, balance.grid

@@ -132,7 +132,7 @@ class Motions:
         except (ParameterError, RunApart):
             return False
 
-    def run(self, x: Any, duration: float, p: float, times: Any = None) -> MotionRows:
+    def run(self, x: np.ndarray, duration: float, p: float, times: np.ndarray | None = None) -> MotionRows:
         """The motion from x (2n,) at a parameter value: its steps, or at instants."""
         n, m = self.size, self.shape.m
         self.single.fixed[3:] = self.numbers(p)[0]
@@ -162,25 +162,25 @@ class Motions:
         numbers = self.numbers(p)[0]
         return np.array([self._number(numbers, f"V{c}") for c in range(self.shape.m)])
 
-    def _matrix(self, numbers: Any, name: str, rows: int, columns: int) -> Any:
+    def _matrix(self, numbers: np.ndarray, name: str, rows: int, columns: int) -> Any:
         found = [self._number(numbers, f"{name}{i}_{j}") for i in range(rows) for j in range(columns)]
         return np.reshape(found, (rows, columns))
 
-    def _number(self, numbers: Any, name: str) -> float:
+    def _number(self, numbers: np.ndarray, name: str) -> float:
         return float(numbers[self.place[name]]) if name in self.place else 0.0
 
-    def _ends(self, numbers: Any, starts: Any, duration: float, of: Any) -> Ends:
+    def _ends(self, numbers: np.ndarray, starts: np.ndarray, duration: float, of: float | np.ndarray) -> Ends:
         self.flows.numbers = numbers[:, self.seen]
         return self.flows.to(duration, starts, of)
 
-    def derivative(self, x: Any, duration: float, p: float, scale: Any, size: float) -> tuple[Any, float]:
+    def derivative(self, x: np.ndarray, duration: float, p: float, scale: np.ndarray, size: float) -> tuple[Any, float]:
         """The derivative of the end by the start and by the parameter, (2n, 2n + 1), as `extrapolated` has it.
 
         scale (2n,), size : what makes velocities of a state [1/s or 1], and the largest in the motion [m/s]
         """
         numbers, slope = self.numbers(p)
 
-        def flow(beside: Any) -> Ends:
+        def flow(beside: np.ndarray) -> Ends:
             along = beside[:, -1:]
             return self._ends(numbers + along * slope, beside[:, :-1], duration, np.arange(len(beside)))
 
@@ -195,7 +195,7 @@ def _on(line: tuple[Any, Any, Any, float], p: float) -> Any:
     return line[0] + (p - line[3]) * line[1]
 
 
-def _alike(value: Any, other: Any, line: tuple[Any, Any, Any, float]) -> bool:
+def _alike(value: np.ndarray, other: np.ndarray, line: tuple[Any, Any, Any, float]) -> bool:
     """Whether two rows of numbers are the same but for round-off."""
     with np.errstate(invalid="ignore"):
         return bool(np.all((value == other) | (np.abs(value - other) <= ROUND_OFF * line[2])))

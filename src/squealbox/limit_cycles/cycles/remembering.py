@@ -14,7 +14,7 @@ from squealbox.limit_cycles.cycles.field import Autonomous, Field, check_autonom
 from squealbox.matrices import Equilibrium
 from squealbox.stability import complex_modes
 from squealbox.start import Start
-from squealbox.system import InvalidSystem, System, as_system, equilibrium
+from squealbox.system import DesignOrSystem, InvalidSystem, System, as_system, equilibrium
 from squealbox.transient import (
     ALGEBRAIC,
     WITH_MASS,
@@ -58,13 +58,13 @@ class Remembering(Autonomous):
     def sliding(self) -> Equilibrium:
         return equilibrium(self.asked)
 
-    def state(self, q: Any, qd: Any, memory: Any = None) -> Any:
+    def state(self, q: np.ndarray, qd: np.ndarray, memory: np.ndarray | None = None) -> Any:
         q, qd = start_of(self._wide, Start(q, qd), 0.0)
         if memory is not None and len(memory):
             q = np.concatenate([q[: len(q) - len(memory)], memory])
         return np.concatenate([q, qd])
 
-    def rate(self, x: Any, mode: Any) -> Any:
+    def rate(self, x: np.ndarray, mode: np.ndarray) -> Any:
         """x' from the first instants of the motion, which takes its modes itself."""
         h, n = INSTANT / self.frequency, self.size
         times = np.array([0.0, h, 2.0 * h])
@@ -85,7 +85,7 @@ class Remembering(Autonomous):
             worst = max(worst, float(off) / (float(np.max(np.abs(command))) or 1.0))
         return worst
 
-    def multipliers(self, monodromy: Any) -> Any:
+    def multipliers(self, monodromy: np.ndarray) -> Any:
         inside = monodromy[np.ix_(self.independent, self.independent)]
         if not np.all(np.isfinite(inside)):
             return np.full(len(inside), np.nan)
@@ -107,7 +107,7 @@ def with_delays(asked: System) -> System:
     return found
 
 
-def field_of(design_or_system: Any, contact: str = "exact", width: float = 1e-3) -> Autonomous:
+def field_of(design_or_system: DesignOrSystem, contact: str = "exact", width: float = 1e-3) -> Autonomous:
     """The equation of a system whose states are q and q', else what its motion tells."""
     system = as_system(design_or_system)
     wide = with_delays(system)

@@ -7,8 +7,6 @@ true ones. By the standard of convergence itself, the motion closes after T/m as
     |x(T/m) - x(0)| <= tolerance, scaled as the residual of shooting
 """
 
-from typing import Any
-
 import numpy as np
 
 from squealbox.limit_cycles.cycles.field import Autonomous
@@ -17,7 +15,7 @@ from squealbox.limit_cycles.cycles.variation import fly
 MOST = 64  # rounds looked for
 
 
-def rounds(field: Autonomous, x: Any, period: float, size: float, rtol: float, tolerance: float) -> int:
+def rounds(field: Autonomous, x: np.ndarray, period: float, size: float, rtol: float, tolerance: float) -> int:
     """The largest m up to 64 for which the cycle from x closes after period/m; `size` is that of its scaled states."""
     parts = np.arange(MOST, 0, -1)
     run = fly(field, x, period, rtol, np.r_[0.0, period / parts])

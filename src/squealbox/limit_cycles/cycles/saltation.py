@@ -25,7 +25,7 @@ import numpy as np
 from squealbox.limit_cycles.cycles.field import OPEN, Field
 
 
-def surface(field: Field, x: Any, before: Any, contact: int) -> tuple[float, float, Any]:
+def surface(field: Field, x: np.ndarray, before: np.ndarray, contact: int) -> tuple[float, float, Any]:
     """The event function h of a contact in its mode before the event, its size, and h_x, shape (2n,)."""
     n = field.size
     normal, speed = field.contact_state(x)
@@ -42,8 +42,8 @@ def surface(field: Field, x: Any, before: Any, contact: int) -> tuple[float, flo
 
 
 def saltation(
-    field: Field, x: Any, before: Any, after: Any, beside: tuple[Field, Field, float] | None = None,
-    rates: tuple[Any, Any] | None = None,
+    field: Field, x: np.ndarray, before: np.ndarray, after: np.ndarray,
+    beside: tuple[Field, Field, float] | None = None, rates: tuple[Any, Any] | None = None,
 ) -> tuple[Any, float, int]:  # fmt: skip
     """S (2n, 2n) at state x between two sets of modes, the event's rate h_x.f- scaled by |h_x||f-|, and its contact.
 

@@ -26,6 +26,8 @@ from squealbox.limit_cycles.cycles.starting import first_guess
 from squealbox.limit_cycles.cycles.variation import Flight, fly
 from squealbox.parameters import ParameterError, known_names
 from squealbox.result import Outcome
+from squealbox.start import StartLike
+from squealbox.system import DesignOrSystem
 
 CONTACTS = {"exact": "exact", "smooth": "arctan", "arctan": "arctan", "tanh": "tanh"}
 NOWHERE = "no motion stays on an unstable cycle: another start or a longer `settle` may lead to what it settles to"
@@ -36,8 +38,8 @@ TURNS = (1, 2, 4)  # past a doubling, a run settles on the cycle that closes aft
 
 @public()
 def shooting(
-    design_or_system: Any,
-    start: Any = None,
+    design_or_system: DesignOrSystem,
+    start: StartLike = None,
     *,
     contact: str = "exact",
     width: float = 1e-3,
@@ -86,7 +88,7 @@ def shooting(
     settings = {"contact": contact, "width": width, "shots": shots, "rtol": rtol, "tolerance": tolerance}
     known = isinstance(start, Cycle) or (isinstance(start, (tuple, list)) and len(start) == 3)
 
-    def reached(start: Any) -> Cycle:
+    def reached(start: StartLike) -> Cycle:
         x, period, found = first_guess(field, start, settle)
         if not found.ok:
             return cycle_through(field, x, period, [], found, settings, samples)
@@ -115,7 +117,7 @@ def shooting(
 
 
 def _solved(
-    field: Autonomous, x: Any, period: float, shots: int, rtol: float, tolerance: float, most: int
+    field: Autonomous, x: np.ndarray, period: float, shots: int, rtol: float, tolerance: float, most: int
 ) -> tuple[Newton, Outcome]:
     """Newton's method from x; where it converged on a cycle wound several times, again for one round of it."""
     for _ in range(2):
@@ -135,7 +137,7 @@ def _flips(cycle: Cycle) -> bool:
 
 
 def cycle_through(
-    field: Autonomous, x: Any, period: float, flights: list[Flight], outcome: Outcome, settings: dict[str, Any],
+    field: Autonomous, x: np.ndarray, period: float, flights: list[Flight], outcome: Outcome, settings: dict[str, Any],
     samples: int, error: float = np.nan,
 ) -> Cycle:  # fmt: skip
     """The cycle through x, sampled at equal instants and at its events; its multipliers are those of its flights."""

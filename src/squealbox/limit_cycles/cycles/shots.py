@@ -35,7 +35,7 @@ class Shots:
 class Newton:
     """Newton's method on the shots; keeps the history of the scaled residual and counts motions and derivatives."""
 
-    def __init__(self, field: Autonomous, nodes: Any, period: float, rtol: float) -> None:
+    def __init__(self, field: Autonomous, nodes: np.ndarray, period: float, rtol: float) -> None:
         self.field, self.nodes, self.period, self.rtol, self.size = field, nodes, period, rtol, 1.0
         self.reference = nodes[0].copy()
         self.history: list[float] = []
@@ -66,7 +66,7 @@ class Newton:
             return Outcome("no_convergence", message, history=self.history, advice=ADVICE)
         return self._degenerate(now) or Outcome(COMPLETED, "", history=self.history)
 
-    def _shoot(self, nodes: Any, period: float) -> Shots:
+    def _shoot(self, nodes: np.ndarray, period: float) -> Shots:
         motions = []
         for node in nodes:
             motions.append(fly(self.field, node, period / len(nodes), self.rtol))
@@ -85,7 +85,7 @@ class Newton:
         pairs = zip(now.nodes, now.motions, strict=True)
         return [self._derivative(node, duration, motion, last) for node, motion in pairs]
 
-    def _derivative(self, x: Any, duration: float, motion: Trajectory, last: bool) -> Flight:
+    def _derivative(self, x: np.ndarray, duration: float, motion: Trajectory, last: bool) -> Flight:
         """Quickly on the way to the cycle, where that tells the derivative well enough."""
         if not last and isinstance(self.field, Field) and is_small(self.field.held_fast):
             near = by_differences(self.field, x, duration, self.rtol, motion=motion)
@@ -97,7 +97,7 @@ class Newton:
         normal = self.field.rate(self.reference, motion.mode[0]) * self.field.scale
         return normal / np.linalg.norm(normal)
 
-    def _step(self, now: Shots, normal: Any, least: float = 1e-14) -> Any:
+    def _step(self, now: Shots, normal: np.ndarray, least: float = 1e-14) -> Any:
         """Newton step (k 2n + 1,), in scaled states and the share of the period; none along what changes so little."""
         k, size = now.nodes.shape
         scale = self.field.scale
@@ -116,7 +116,7 @@ class Newton:
         step[-1] /= weight
         return step
 
-    def _damped(self, now: Shots, step: Any, most_halvings: int) -> Shots | None:
+    def _damped(self, now: Shots, step: np.ndarray, most_halvings: int) -> Shots | None:
         """The first of the step, its half, its quarter ... that lowers the residual; None when none does."""
         share = min(1.0, 0.3 / max(abs(step[-1]), 1e-300))
         for _ in range(most_halvings + 1):
@@ -140,7 +140,7 @@ def monodromy(flights: list[Flight]) -> Any:
     return functools.reduce(lambda total, flight: flight.phi @ total, flights[1:], flights[0].phi)
 
 
-def nodes_along(field: Autonomous, x: Any, period: float, shots: int, rtol: float) -> Any:
+def nodes_along(field: Autonomous, x: np.ndarray, period: float, shots: int, rtol: float) -> Any:
     """Starts of the shots, along the motion from x."""
     if shots == 1:
         return x[None].copy()

@@ -9,7 +9,7 @@ from squealbox.limit_cycles.cycles.field import Autonomous
 from squealbox.limit_cycles.cycles.variation import PERIOD_STEPS, fly
 from squealbox.result import COMPLETED, Outcome
 from squealbox.stability import Mode, complex_modes
-from squealbox.start import Start
+from squealbox.start import Start, StartLike
 from squealbox.system import equilibrium
 from squealbox.transient import Trajectory, simulate
 
@@ -53,7 +53,9 @@ def first_guess(field: Autonomous, start: Any, settle: float | None) -> tuple[An
     return first_return(field, x, slowest)
 
 
-def _settled_under_a_delay(field: Autonomous, x: Any, duration: float, slowest: float) -> tuple[Any, float, Outcome]:
+def _settled_under_a_delay(
+    field: Autonomous, x: np.ndarray, duration: float, slowest: float
+) -> tuple[Any, float, Outcome]:
     """As `first_guess`: a long run under the delay itself, and a short one with its rows, which make steps tiny."""
     n, size = field.system.size, field.size
     start = x[:n], x[size : size + n]
@@ -64,7 +66,7 @@ def _settled_under_a_delay(field: Autonomous, x: Any, duration: float, slowest: 
     return first_return(field, x, slowest) if outcome.ok else (x, slowest, outcome)
 
 
-def _under_way(field: Autonomous, x: Any, period: float) -> tuple[Any, float, Outcome]:
+def _under_way(field: Autonomous, x: np.ndarray, period: float) -> tuple[Any, float, Outcome]:
     """A known start, with what is then under way in delays, as a period of the motion from it leaves that."""
     if field.late:
         run = fly(field, x, period, GUESS_RTOL)
@@ -75,7 +77,7 @@ def _under_way(field: Autonomous, x: Any, period: float) -> tuple[Any, float, Ou
     return x, period, Outcome(COMPLETED)
 
 
-def first_return(field: Autonomous, x: Any, period: float) -> tuple[Any, float, Outcome]:
+def first_return(field: Autonomous, x: np.ndarray, period: float) -> tuple[Any, float, Outcome]:
     """A state in fast slip on the motion from x, and the time after which the motion comes back to it."""
     run = fly(field, x, 12.0 * period, GUESS_RTOL, most=12 * PERIOD_STEPS)
     if run.outcome.ok and _inside_a_stick(run):  # the belt is slow: look for as long as contacts may stick
@@ -151,7 +153,7 @@ def _fast_slip(run: Trajectory) -> int:
     return int(np.argmax(np.min(np.abs(run.sliding_velocity[:half]), axis=1)))
 
 
-def state_of(field: Autonomous, start: Any) -> Any:
+def state_of(field: Autonomous, start: StartLike) -> Any:
     """The state (q, qd) in one row, (2n,), that a `Start` means; None is near the mode that grows fastest, or rest."""
     if start is None:
         modes = complex_modes(field.asked)

@@ -61,21 +61,26 @@ class Flight:
 
 
 def fly(
-    field: Autonomous, x: Any, duration: float, rtol: float = 1e-13, times: Any = None, most: int = PERIOD_STEPS
+    field: Autonomous,
+    x: np.ndarray,
+    duration: float,
+    rtol: float = 1e-13,
+    times: np.ndarray | None = None,
+    most: int = PERIOD_STEPS,
 ) -> Trajectory:
     """The motion from x over `duration` [s], with tolerances relative to the speeds in it, in at most `most` steps."""
     n, method = field.size, method_of(field, x, rtol, most)
     return simulate(field.held_fast, duration, (x[:n], x[n:]), times, method, field.contact, width=field.width)
 
 
-def method_of(field: Autonomous, x: Any, rtol: float, most: int = PERIOD_STEPS) -> Method:
+def method_of(field: Autonomous, x: np.ndarray, rtol: float, most: int = PERIOD_STEPS) -> Method:
     """How the motion from x is integrated to a relative tolerance."""
     speed = max(float(np.max(np.abs(x[field.size :]), initial=0.0)), float(np.max(np.abs(field.V), initial=0.0)))
     return Method("dormand-prince-8", rtol=rtol, atol=1e-2 * rtol * (speed or 1.0), most_steps=most)
 
 
 def flight(
-    field: Field, x: Any, duration: float, rtol: float = 1e-13, *, motion: Moved | None = None
+    field: Field, x: np.ndarray, duration: float, rtol: float = 1e-13, *, motion: Moved | None = None
 ) -> Flight:  # fmt: skip
     """The motion from x over `duration` [s] and its derivative by x: to about 1e-12, 1e-9 with a smoothed law's kink.
 
@@ -112,7 +117,7 @@ def flight(
 
 
 def quick_flight(
-    field: Field, x: Any, duration: float, rtol: float = 1e-11, steps: int = 400, motion: Moved | None = None,
+    field: Field, x: np.ndarray, duration: float, rtol: float = 1e-11, steps: int = 400, motion: Moved | None = None,
     beside: tuple[Field, Field, float] | None = None,
 ) -> Flight:  # fmt: skip
     """As `flight`, with Phi by some 400 Magnus steps in all and no second look: 1e-8 in a third of the time.
@@ -146,7 +151,11 @@ def quick_flight(
 
 
 def jumps_of(
-    field: Field, states: Any, mode: Any, events: Sequence[int], beside: tuple[Field, Field, float] | None = None
+    field: Field,
+    states: np.ndarray,
+    mode: np.ndarray,
+    events: Sequence[int],
+    beside: tuple[Field, Field, float] | None = None,
 ) -> tuple[list[Any], float, bool]:
     """Saltation matrices at rows of a motion, the least |rate| of an event, whether contacts change together."""
     if not events:
@@ -159,7 +168,7 @@ def jumps_of(
 
 
 def _with_parameter(
-    field: Field, by_x: Any, states: Any, mode: Any, beside: tuple[Field, Field, float]
+    field: Field, by_x: np.ndarray, states: np.ndarray, mode: np.ndarray, beside: tuple[Field, Field, float]
 ) -> tuple[Any, float]:
     """df/d(x, p), (k, 2n + 1, 2n + 1), and what p is multiplied by to weigh as the others do."""
     low, high, distance = beside
@@ -184,7 +193,7 @@ def chained(parts: list[Any], jumps: list[Any]) -> Any:
     return total
 
 
-def subdivided(t: Any, parts: int) -> Any:
+def subdivided(t: np.ndarray, parts: int) -> Any:
     """The instants t with the intervals between them in so many equal parts."""
     inner = t[:-1, None] + np.diff(t)[:, None] * np.arange(parts) / parts
     return np.append(inner.ravel(), t[-1])
@@ -201,18 +210,18 @@ def between(run: Callable[[Any], Moved], edges: list[Any]) -> list[Any]:
     return np.split(np.hstack([inner.q, inner.qd])[place], np.cumsum([len(t) for t in instants])[:-1])
 
 
-def gauss(edges: Any) -> Any:
+def gauss(edges: np.ndarray) -> Any:
     """The two Gauss points of each step, in rising order."""
     middle, h = 0.5 * (edges[1:] + edges[:-1]), np.diff(edges)
     return (middle[:, None] + np.array([-1.0, 1.0]) * np.sqrt(3.0) / 6.0 * h[:, None]).ravel()
 
 
-def extrapolated(coarse: Any, fine: Any) -> Any:
+def extrapolated(coarse: np.ndarray, fine: np.ndarray) -> Any:
     """What two results of order 4 at a step and at its half lead to (Richardson)."""
     return fine + (fine - coarse) / 15.0
 
 
-def magnus(a: Any, b: Any, dt: Any, scale: Any) -> Any:
+def magnus(a: np.ndarray, b: np.ndarray, dt: float | np.ndarray, scale: np.ndarray) -> Any:
     """Phi over steps dt, one or (k,), from df/dx at the two Gauss points of each, a and b (k, m, m): order 4 in dt.
 
     exp(dt (a + b)/2 + sqrt(3) dt^2 [b, a]/12), Iserles and Norsett 1999, Phil. Trans. R. Soc. A 357, 983-1019.
@@ -221,13 +230,13 @@ def magnus(a: Any, b: Any, dt: Any, scale: Any) -> Any:
     return _product(_factors(a * ratio, b * ratio, dt)) / ratio
 
 
-def _factors(a: Any, b: Any, dt: Any) -> Any:
+def _factors(a: np.ndarray, b: np.ndarray, dt: float | np.ndarray) -> Any:
     """Phi of each of the steps."""
     dt = np.reshape(dt, (-1, 1, 1))
     return _exponential(0.5 * dt * (a + b) + np.sqrt(3.0) / 12.0 * dt**2 * (b @ a - a @ b))
 
 
-def _product(factors: Any) -> Any:
+def _product(factors: np.ndarray) -> Any:
     """Product of matrices (k, m, m), the first to act first."""
     while len(factors) > 1:
         if len(factors) % 2:
@@ -236,7 +245,7 @@ def _product(factors: Any) -> Any:
     return factors[0]
 
 
-def _exponential(matrices: Any) -> Any:
+def _exponential(matrices: np.ndarray) -> Any:
     """exp of small matrices (k, m, m): Taylor to order 12 after halving to a norm below 1/4, and squaring back."""
     norm = float(np.max(np.sum(np.abs(matrices), axis=-1), initial=0.0))
     halvings = max(0, int(np.ceil(np.log2(max(norm, 1e-300) / 0.25))))
@@ -250,6 +259,6 @@ def _exponential(matrices: Any) -> Any:
     return total
 
 
-def _relative(field: Field, difference: Any, states: Any) -> float:
+def _relative(field: Field, difference: Sequence[np.ndarray], states: np.ndarray) -> float:
     scaled = field.scale * difference
     return float(np.max(np.abs(scaled)) / (np.max(np.abs(field.scale * states)) + 1e-300))

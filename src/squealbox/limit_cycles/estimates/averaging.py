@@ -15,15 +15,18 @@ for any law.
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.arguments import public
-from squealbox.family import Family, Varied
+from squealbox.family import DesignOrRecipe, Family, Varied
 from squealbox.friction import Cubic, Stribeck
 from squealbox.law import FrictionLaw
 from squealbox.limit_cycles.cycles.cycle import Cycle
 from squealbox.limit_cycles.cycles.harmonic_balance import harmonic_balance
 from squealbox.parameters import ParameterError
 from squealbox.schedules import value_at
+from squealbox.start import StartLike
+from squealbox.system import DesignOrSystem
 
 POINTS = 256  # of the average; exponentially accurate for a smooth law
 SCAN = 400
@@ -31,7 +34,7 @@ FINE = 8192  # of the touching cycle, whose law may fall steeply near v = 0
 
 
 @public()
-def describing_function(design_or_system: Any, start: Any = None, **options: Any) -> Cycle:
+def describing_function(design_or_system: DesignOrSystem, start: StartLike = None, **options: Any) -> Cycle:
     """The cycle with one harmonic and a mean: :func:`harmonic_balance` with ``harmonics=1``.
 
     Parameters are those of :func:`harmonic_balance`. Accuracy: `error` of the result says nothing here; compare with
@@ -44,7 +47,9 @@ def describing_function(design_or_system: Any, start: Any = None, **options: Any
     return harmonic_balance(design_or_system, start, harmonics=1, **options)
 
 
-def averaged_excess(law: FrictionLaw, swing: Any, sliding_speed: Any, normal_force: float, damping: float) -> Any:
+def averaged_excess(
+    law: FrictionLaw, swing: ArrayLike, sliding_speed: ArrayLike, normal_force: float, damping: float
+) -> Any:
     """Friction's drive less damping, (N/pi) integral mu cos - c u [N], at velocity amplitudes `swing` [m/s]."""
     theta = 2.0 * np.pi * (np.arange(POINTS) + 0.5) / POINTS
     swing = np.asarray(swing, dtype=float)[..., None]
@@ -86,7 +91,7 @@ def averaged_swings(law: FrictionLaw, sliding_speed: float, normal_force: float,
 
 
 @public()
-def averaged_curve(design: Any, parameter: Varied, values: Any = None) -> tuple[Any, Any]:
+def averaged_curve(design: DesignOrRecipe, parameter: Varied, values: ArrayLike | None = None) -> tuple[Any, Any]:
     """(values, amplitudes [m]) of the averaged cycles over a parameter, for a figure; empty unless it is one block.
 
     Parameters

@@ -13,11 +13,12 @@ import numpy as np
 
 from squealbox.arguments import public
 from squealbox.continuation import StepControl, along
-from squealbox.family import Bounds, Family, Varied
+from squealbox.family import Bounds, DesignOrRecipe, Family, Varied
 from squealbox.limit_cycles.branches.branch import Branch
 from squealbox.limit_cycles.branches.harmonic_path import HarmonicPath
 from squealbox.limit_cycles.cycles.harmonic_balance import Grid, harmonic_balance
 from squealbox.limit_cycles.estimates.averaging import averaged_curve
+from squealbox.system import System
 
 WIDTH = 5e-2  # of the fastest sliding speed, over which sgn(v) is smoothed; the balance is seldom solved with less
 SAMPLES = 1024  # of a period, some ten of them within that width, and more where v turns
@@ -57,7 +58,7 @@ class EstimateCurve:
 
 @public()
 def estimate_curves(
-    design: Any, parameter: Varied, bounds: Bounds | None = None, branches: Sequence[Branch] = ()
+    design: DesignOrRecipe, parameter: Varied, bounds: Bounds | None = None, branches: Sequence[Branch] = ()
 ) -> tuple[EstimateCurve, ...]:
     """The describing function through each branch, and averaging where the system is a block on a belt.
 
@@ -118,11 +119,13 @@ def _through(family: Family, one: Branch, known: list[EstimateCurve]) -> Estimat
     return None
 
 
-def _fastest(system: Any) -> float:
+def _fastest(system: System) -> float:
     return max((abs(float(np.asarray(c.V))) for c in system.contacts), default=0.0)
 
 
-def _followed(path: HarmonicPath, x: Any, p: float, bounds: tuple[float, float], way: float) -> list[tuple[float, Any]]:
+def _followed(
+    path: HarmonicPath, x: np.ndarray, p: float, bounds: tuple[float, float], way: float
+) -> list[tuple[float, Any]]:
     """(value, amplitudes) along the curve one way, until it leaves the bounds or shrinks to steady sliding."""
     control = StepControl(first=1e-2, largest=0.1, most_points=POINTS, tolerance=1e-8, newton_steps=6)
     walk = along(path, x, p, control=control, direction=way, bounds=bounds)
@@ -139,7 +142,7 @@ def _followed(path: HarmonicPath, x: Any, p: float, bounds: tuple[float, float],
     return points
 
 
-def _near(curve: EstimateCurve, value: float, size: Any, bounds: tuple[float, float], one: Branch) -> bool:
+def _near(curve: EstimateCurve, value: float, size: np.ndarray, bounds: tuple[float, float], one: Branch) -> bool:
     """True where a curve passes through an amplitude at a value, nearly."""
     scale = np.append(bounds[1] - bounds[0], np.max(one.amplitude))
     here = np.append(value, np.max(size)) / scale

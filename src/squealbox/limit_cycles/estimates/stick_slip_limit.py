@@ -12,6 +12,7 @@ with one orbit of high order behind it. Averaging (`averaged_limit`) has an erro
 Source: derived here.
 """
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -41,12 +42,12 @@ def return_gap(
 
     limit, slope = float(law.mu(0.0)), float(law.slope_at(0.0))
 
-    def rate(_: float, y: Any) -> Any:
+    def rate(_: float, y: Sequence[float] | np.ndarray) -> Any:
         v = sliding_speed - y[1]
         mu = float(law.mu(v)) if v >= 0.0 else limit + v * slope
         return [y[1], (normal_force * mu - damping * y[1] - stiffness * y[0]) / mass]
 
-    def turning(t: float, y: Any) -> float:
+    def turning(t: float, y: Sequence[float] | np.ndarray) -> float:
         return float(rate(t, y)[1])
 
     turning.direction = -1.0  # type: ignore[attr-defined]

@@ -31,7 +31,7 @@ def without_contacts() -> Findings:
     return dict.fromkeys(RULES, LINEAR)
 
 
-def constant_stretch(time: Any, envelope: Any) -> tuple[float, float]:
+def constant_stretch(time: np.ndarray, envelope: np.ndarray) -> tuple[float, float]:
     """Begin and end [s] of the longest stretch in which an amplitude is constant within 10 % and not gone."""
     alive = envelope > GONE * np.max(envelope, initial=0.0)
     best = (0.0, 0.0)

@@ -91,7 +91,13 @@ class Case:
         """The same with other choices."""
         return dataclasses.replace(self, **changes)
 
-    def design(self, mu: Any = FRICTION, load: Any = LOAD, speed: Any = None, **changes: Any) -> Any:
+    def design(
+        self,
+        mu: Any = FRICTION,
+        load: Any = LOAD,
+        speed: Any = None,
+        **changes: Any,
+    ) -> Any:
         """The brake of this case; `mu`, `load` [N] and angles [rad] may be arrays, `speed` [m/s] a schedule."""
         brake = DrumBrake(
             reading=self.reading if self.has_contacts else "eq3",

@@ -3,14 +3,17 @@
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox import plots
+from squealbox.designs import DrumBrake
 from squealbox.papers.drum_brake_2011.cases import Case
 from squealbox.papers.drum_brake_2011.figures import Margins
 from squealbox.plots import drawing, figure_of
 from squealbox.words import number
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 INK, BLUE, RED = "#000000", "#0072B2", "#D55E00"
@@ -49,7 +52,7 @@ def friction(case: Case) -> "Figure":
         return figure_of(axes)
 
 
-def _supports(axes: Any, brake: Any) -> None:
+def _supports(axes: "Axes", brake: DrumBrake) -> None:
     """k1 and c1 to the left, k2 and c2 below."""
     for offset, kind, name in (
         (0.32, _spring, f"$k_1$ = {brake.k1 / 1e6:g} N/µm"),
@@ -64,7 +67,7 @@ def _supports(axes: Any, brake: Any) -> None:
     ):
         root = -np.sqrt(DRUM**2 - offset**2)
         kind(axes, (offset, root), (offset, -GROUND))
-        side = {"ha": "right" if offset < 0 else "left", "va": "center", "fontsize": 7}
+        side: dict[str, Any] = {"ha": "right" if offset < 0 else "left", "va": "center", "fontsize": 7}
         axes.text(offset + (-0.2 if offset < 0 else 0.2), -1.75, name, **side)
     _wall(axes, (-GROUND, 0.0), (0.0, 1.0))
     _wall(axes, (0.0, -GROUND), (1.0, 0.0))
@@ -110,14 +113,14 @@ def _axes_cross(axes: Any) -> None:
     axes.text(*(origin - (0.0, 0.2)), "angles from the y-axis, clockwise", fontsize=6.5, va="center")
 
 
-def _spring(axes: Any, start: Any, end: Any) -> None:
+def _spring(axes: "Axes", start: ArrayLike, end: ArrayLike) -> None:
     """A zigzag between two points."""
     share = np.concatenate([[0.0], np.linspace(0.2, 0.8, 13), [1.0]])
     aside = np.concatenate([[0.0, 0.0], np.resize([0.09, -0.09], 11), [0.0, 0.0]])
     axes.plot(*_along(start, end, share, aside).T, color=INK, linewidth=0.9)
 
 
-def _damper(axes: Any, start: Any, end: Any) -> None:
+def _damper(axes: "Axes", start: ArrayLike, end: ArrayLike) -> None:
     """A pot and a piston between two points."""
     for share, aside in (
         ([0.0, 0.45], [0.0, 0.0]),
@@ -128,14 +131,14 @@ def _damper(axes: Any, start: Any, end: Any) -> None:
         axes.plot(*_along(start, end, np.array(share), np.array(aside)).T, color=INK, linewidth=0.9)
 
 
-def _along(start: Any, end: Any, share: Any, aside: Any) -> Any:
+def _along(start: ArrayLike, end: ArrayLike, share: np.ndarray, aside: np.ndarray) -> Any:
     start, end = np.asarray(start, dtype=float), np.asarray(end, dtype=float)
     line = end - start
     across = np.array([-line[1], line[0]]) / np.linalg.norm(line)
     return start + share[:, None] * line + aside[:, None] * across
 
 
-def _wall(axes: Any, middle: Any, along: Any) -> None:
+def _wall(axes: "Axes", middle: ArrayLike, along: ArrayLike) -> None:
     middle, along = np.asarray(middle), np.asarray(along)
     outwards = middle / np.linalg.norm(middle)
     ends = np.stack([middle - 0.6 * along, middle + 0.6 * along])

@@ -1,6 +1,6 @@
 """What tens of thousands of transients show, beside the eigenvalues: maps, and the maxima over friction."""
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,6 +13,7 @@ from squealbox.plots import drawing, figure_of
 from squealbox.words import quantity_label
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 COLOURS = ("#ffffff", "#E69F00", "#0072B2", "#d0d0d0", "#009E73", "#000000")  # of MEANS, different in grey as well
@@ -78,14 +79,14 @@ def maxima(case: Case, found: Maxima, onset: float) -> "Figure":
         return figure_of(panel)
 
 
-def _eigenvalues(panel: Any, found: SquealMap, x: Axis, y: Axis) -> None:
+def _eigenvalues(panel: "Axes", found: SquealMap, x: Axis, y: Axis) -> None:
     plots.stability_map(
         found.x / x[2], found.y / y[2], found.growth.T, x_name=x[0], x_unit=x[1], y_name=y[0], y_unit=y[1],
         title="by eigenvalues", axes=panel,
     )  # fmt: skip
 
 
-def _transients(panel: Any, found: SquealMap, x: Axis, y: Axis) -> None:
+def _transients(panel: "Axes", found: SquealMap, x: Axis, y: Axis) -> None:
     """The kinds as colours, and the boundary by eigenvalues as a line on them."""
     from matplotlib.colors import ListedColormap
 
@@ -104,7 +105,7 @@ def _transients(panel: Any, found: SquealMap, x: Axis, y: Axis) -> None:
         panel.set(xlabel=quantity_label(x[0], x[1]), ylabel=quantity_label(y[0], y[1]))
 
 
-def _legend(figure: Any, maps: list[SquealMap]) -> None:
+def _legend(figure: "Figure", maps: list[SquealMap]) -> None:
     """The kinds that occur, below the panels."""
     from matplotlib.patches import Patch
 

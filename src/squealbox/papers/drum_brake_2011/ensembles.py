@@ -131,7 +131,7 @@ def maxima(case: Case, size: int = USUAL.friction) -> Maxima:
     return Maxima(over["friction.static"], rest, near, sliding[:, 0])
 
 
-def level(case: Case, run: Ensemble, speed: Any = None) -> Any:
+def level(case: Case, run: Ensemble, speed: np.ndarray | None = None) -> Any:
     """Speed of the vibration over that of the belt at the end of each trajectory; NaN where it did not get there."""
     ended = run.ended == "completed"
     frequency, amplitude = (np.where(ended[..., None], run[name], 0.0) for name in ("frequency", "amplitude"))
@@ -145,7 +145,7 @@ def _map(case: Case, over: dict[str, Any], coarse: int = COARSE) -> SquealMap:
     plane = dict(zip(over, np.meshgrid(x, y, indexing="ij"), strict=True))
     levels, kind = np.full(growth.shape, np.nan), np.full(growth.shape, UNKNOWN)
 
-    def run(there: Any) -> None:
+    def run(there: np.ndarray) -> None:
         chosen = {name: values[there] for name, values in plane.items()}
         levels[there], kind[there] = _kinds(case, chosen, growth[there])
 
@@ -153,7 +153,7 @@ def _map(case: Case, over: dict[str, Any], coarse: int = COARSE) -> SquealMap:
     return SquealMap(x, y, growth, levels, kind, made)
 
 
-def refined(unstable: Any, kind: Any, run: Callable[[Any], None], coarse: int) -> Any:
+def refined(unstable: np.ndarray, kind: np.ndarray, run: Callable[[Any], None], coarse: int) -> Any:
     """Let `run` fill `kind` where it differs from its neighbours, and fill the rest; True where it was run.
 
     Begins with every `coarse`-th value of both axes, a power of two; a square is halved whose corners differ in kind or
@@ -191,7 +191,7 @@ def refined(unstable: Any, kind: Any, run: Callable[[Any], None], coarse: int) -
     return made
 
 
-def _differ(values: Any, size: int, step: int) -> Any:
+def _differ(values: np.ndarray, size: int, step: int) -> Any:
     """Whether the values in each square of this size differ; corners alone with `step` = `size`, else every point."""
     rows, columns = ((n - 1) // size for n in values.shape)
     first = values[: rows * size : size, : columns * size : size]
@@ -202,7 +202,7 @@ def _differ(values: Any, size: int, step: int) -> Any:
     return found
 
 
-def _kinds(case: Case, there: dict[str, Any], growth: Any) -> tuple[Any, Any]:
+def _kinds(case: Case, there: dict[str, Any], growth: np.ndarray) -> tuple[Any, Any]:
     """The level after 0.05 s at these points, and their kinds."""
     first = _run(case, there, DURATION)
     short = level(case, first, there.get("sliding_speed"))
@@ -218,7 +218,7 @@ def _kinds(case: Case, there: dict[str, Any], growth: Any) -> tuple[Any, Any]:
     return short, kind
 
 
-def _why(unstable: Any, short: Any, longer: Any) -> Any:
+def _why(unstable: np.ndarray, short: np.ndarray, longer: np.ndarray) -> Any:
     """What a trajectory is that differs from the eigenvalues, by its levels after both runs."""
     squeals = longer > LEVEL
     holds = squeals & (longer > HOLDS * short)

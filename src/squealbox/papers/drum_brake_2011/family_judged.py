@@ -1,7 +1,7 @@
 """All fifteen claims for a member of the family, judged as the readings are: by eigenvalues and by raw transients."""
 
 import dataclasses
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Self
 
@@ -37,7 +37,13 @@ class MemberCase:
         """The same with other choices."""
         return dataclasses.replace(self, **changes)
 
-    def design(self, mu: Any = FRICTION, load: Any = LOAD, speed: Any = None, **changes: Any) -> Variant:
+    def design(
+        self,
+        mu: Any = FRICTION,
+        load: Any = LOAD,
+        speed: Any = None,
+        **changes: Any,
+    ) -> Variant:
         """The brake; `mu`, `load` [N] and angles [rad] may be arrays, `speed` [m/s] a schedule."""
         return Variant(
             front=float(self.front),
@@ -52,7 +58,7 @@ class MemberCase:
         )
 
 
-def case_of(row: Any) -> MemberCase:
+def case_of(row: Sequence[float] | np.ndarray) -> MemberCase:
     """A row of `Searched.best` as a case."""
     front, belts, loads, share = (int(each) for each in row[:4])
     return MemberCase(front, belts, loads, share, float(row[4]), float(row[5] / row[4]))
@@ -74,6 +80,6 @@ def claims_met(case: Any) -> dict[str, list[str]]:
     return met
 
 
-def without_mirror_images(best: Any) -> Any:
+def without_mirror_images(best: np.ndarray) -> Any:
     """The rows with shoe 1's sign along x positive: (x, y) -> (-x, -y) turns all signs and gives the same motions."""
     return best[np.asarray(best)[:, 0] < 8]

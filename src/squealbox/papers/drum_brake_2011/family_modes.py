@@ -52,7 +52,7 @@ class Stiffness:
     along_b: Any
     along_c: Any
 
-    def at(self, mu: Any) -> tuple[Any, Any]:
+    def at(self, mu: float | np.ndarray) -> tuple[Any, Any]:
         """K12 and k21."""
         return self.b - mu * self.along_b, self.c - mu * self.along_c
 
@@ -150,7 +150,7 @@ class Members:
         shares = [share_of_load(i, signs, self.weights) for i in range(len(SHARES))]
         self.preload = [np.array([signs[i] * share[i] for share in shares])[None, :, None, None] for i in range(4)]
 
-    def damping(self, mu: Any) -> tuple[Any, Any]:
+    def damping(self, mu: float | np.ndarray) -> tuple[Any, Any]:
         """What a newton of load takes off c11 and c22, at the static deflection of that newton."""
         b, c = self.stiffness.at(mu)
         way = [w / s for w, s in zip(self.way, self.signs, strict=True)]  # the belts
@@ -161,7 +161,7 @@ class Members:
         pressed = [self.signs[i] * self.n[i] * (y if i < 2 else x) + self.preload[i] for i in range(4)]
         return self.alpha * (pressed[0] + pressed[1]), self.alpha * (pressed[2] + pressed[3])
 
-    def unstable(self, mu: Any) -> Any:
+    def unstable(self, mu: float | np.ndarray) -> Any:
         """True where steady sliding at the table's load is unstable, by Routh and Hurwitz."""
         b, c = self.stiffness.at(mu)
         first, second = self.damping(mu)
@@ -182,7 +182,7 @@ class Members:
             high, low = np.where(beyond, middle, high), np.where(beyond, low, middle)
         return np.where(always, 0.0, np.where(never, np.inf, 0.5 * (low + high)))
 
-    def frequencies(self, mu: Any) -> tuple[Any, Any]:
+    def frequencies(self, mu: float | np.ndarray) -> tuple[Any, Any]:
         """The two frequencies [rad/s] without damping; equal where they have met, shape (1, alpha V)."""
         b, c = self.stiffness.at(mu)
         mean, apart = 0.5 * (self.a + self.d), np.sqrt((0.25 * (self.a - self.d) ** 2 + b * c).astype(complex))
@@ -232,13 +232,13 @@ class MembersFound:
         get = self.members.frequencies
         upper_leads = self.difference > 0.0  # the lemma of theorems.which_mode_decays_more
 
-        def close(pair: Any, numbers: Any) -> Any:
+        def close(pair: tuple[Any, Any], numbers: tuple[float, float]) -> Any:
             return (np.abs(pair[0] - numbers[0]) <= RESOLUTION) & (np.abs(pair[1] - numbers[1]) <= RESOLUTION)
 
-        def leading(pair: Any, number: float) -> Any:
+        def leading(pair: tuple[Any, Any], number: float) -> Any:
             return np.abs(np.where(upper_leads, pair[1], pair[0]) - number) <= RESOLUTION
 
-        def apart(mu: Any) -> Any:
+        def apart(mu: float | np.ndarray) -> Any:
             lower, upper = get(mu)
             return upper - lower
 

@@ -156,7 +156,7 @@ def stiffness_only(sets: int = 2000) -> tuple[list[int], float]:
     return [int(i) for i in np.nonzero(met[:, 0])[0]], float(np.mean(np.any(met[:, 1:], axis=0)))
 
 
-def signs_of(row: Any) -> tuple[str, str, str, str]:
+def signs_of(row: np.ndarray) -> tuple[str, str, str, str]:
     """The signs in front, of the belts and of the loads, and the share of N, of a member in words."""
     front, belts, loads, share = (int(each) for each in row[:4])
     words = ["".join("+" if s > 0 else "-" for s in SIGNS[i]) for i in (front, belts, loads)]

@@ -20,6 +20,7 @@ from squealbox.signals import spectrum
 from squealbox.words import scaled
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 FRICTION_SHOWN = tuple(Run("friction", mu) for mu in (0.10, 0.39, 0.40, 0.50))
@@ -107,12 +108,13 @@ class Margins:
         return wide, (height - self.bottom - self.top - (rows - 1) * self.down) / rows
 
 
-def _wipe(panel: Any) -> None:
+def _wipe(panel: "Axes") -> None:
     """Take off all that was drawn, and let the limits follow what is drawn next."""
     for artist in (*panel.lines, *panel.patches, *panel.texts, *panel.collections, *panel.images):
         artist.remove()
-    if panel.get_legend() is not None:
-        panel.get_legend().remove()
+    legend = panel.get_legend()
+    if legend is not None:
+        legend.remove()
     panel.set(title="", xlabel="", ylabel="")
     panel.axis("on")
     panel.relim()
@@ -194,7 +196,7 @@ def pressure_maps(maps: dict[float, PressureMap]) -> "Figure":
     return figure
 
 
-def _history(panel: Any, name: str, raw: Motion, exact: Motion) -> None:
+def _history(panel: "Axes", name: str, raw: Motion, exact: Motion) -> None:
     """The raw series, the course of the exact amplitude on it, and the exact verdict in the corner."""
     title = f"{name}: raw {raw.words}".removeprefix(": ")
     course = exact.verdict if exact.completed and not exact.runs_away else None
@@ -222,7 +224,7 @@ def _printed(series: Any, lines: Any, run: Run, raw: Studies) -> None:
         series.plot([750.0 * DURATION, 1e3 * DURATION], [edge / factor] * 2, color=MARK["color"], linewidth=1.6)
 
 
-def _spectra(panel: Any, raw: Motion, exact: Motion) -> None:
+def _spectra(panel: "Axes", raw: Motion, exact: Motion) -> None:
     """The spectrum of the raw series with its peaks named, the exact one dashed."""
     lines = spectrum(exact.trajectory, dof="x")
     shown = lines.frequency <= UPTO
@@ -234,7 +236,7 @@ def _spectra(panel: Any, raw: Motion, exact: Motion) -> None:
     panel.plot(1e-3 * lines.angular_frequency[shown], lines.amplitude[shown] / factor, **EXACT_LINE)
 
 
-def _phase_plane(panel: Any, name: str, raw: Motion, exact: Motion) -> None:
+def _phase_plane(panel: "Axes", name: str, raw: Motion, exact: Motion) -> None:
     """The raw phase plane, its last part black; the last period of the exact one dashed."""
     factor, unit = scaled("m", raw.trajectory.q[:, 0])
     speed, clock = scaled("m/s", raw.trajectory.qd[:, 0])

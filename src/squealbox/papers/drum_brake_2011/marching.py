@@ -1,25 +1,27 @@
 """The march of `solver_2011.ode23`, plain functions for `compiled`."""
 
-from typing import Any
-
 import numpy as np
+
+# linear, force, sensed, pushed, laws
+Equation = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]
 
 
 def march(
-    linear: Any, force: Any, sensed: Any, pushed: Any, laws: Any, duration: float, rtol: float, shortest: float,
-    times: Any, states: Any, slopes: Any, room: Any,
+    equation: Equation, duration: float, rtol: float, shortest: float, times: np.ndarray, states: np.ndarray,
+    slopes: np.ndarray, room: np.ndarray,
 ) -> int:  # fmt: skip
     """Count k of the accepted steps of Bogacki and Shampine's method, from rest; one more than there is room for if so.
 
-    `linear` (n, 2n) and `force` (n,) give q'' without contacts, `sensed` (contacts, 2n) the rows n and t of each,
-    `pushed` (contacts, n) what its force adds to q'', `laws` its N0, V, mu0 and slope. Instants and states go to
-    `times` and `states` (..., 2n); `slopes` (4, 2n) and `room` (3, 2n) are zeros to work in.
+    equation : linear (n, 2n) and force (n,) give q'' without contacts, sensed (contacts, 2n) the rows n and t of each,
+        pushed (contacts, n) what its force adds to q'', laws its N0, V, mu0 and slope
+
+    Instants and states go to `times` and `states` (..., 2n); `slopes` (4, 2n) and `room` (3, 2n) are zeros to work in.
     """
-    size = len(force)
     y, new, largest = room[0], room[1], room[2]
+    size = len(y) // 2
     for i in range(2 * size):
         largest[i] = 1e-6 / rtol
-    _rate(linear, force, sensed, pushed, laws, y, slopes[0])
+    _rate(equation, y, slopes[0])
     time, step, failed, count = 0.0, 1e-6, False, 1
     times[0] = time
     for i in range(2 * size):
@@ -28,13 +30,13 @@ def march(
         step = min(step, duration / 50.0, duration - time)
         for i in range(2 * size):
             new[i] = y[i] + 0.5 * step * slopes[0, i]
-        _rate(linear, force, sensed, pushed, laws, new, slopes[1])
+        _rate(equation, new, slopes[1])
         for i in range(2 * size):
             new[i] = y[i] + 0.75 * step * slopes[1, i]
-        _rate(linear, force, sensed, pushed, laws, new, slopes[2])
+        _rate(equation, new, slopes[2])
         for i in range(2 * size):
             new[i] = y[i] + step / 9.0 * (2.0 * slopes[0, i] + 3.0 * slopes[1, i] + 4.0 * slopes[2, i])
-        _rate(linear, force, sensed, pushed, laws, new, slopes[3])
+        _rate(equation, new, slopes[3])
         worst = 0.0
         for i in range(2 * size):
             error = -5.0 * slopes[0, i] / 72.0 + slopes[1, i] / 12.0 + slopes[2, i] / 9.0 - slopes[3, i] / 8.0
@@ -58,8 +60,9 @@ def march(
     return count
 
 
-def _rate(linear: Any, force: Any, sensed: Any, pushed: Any, laws: Any, y: Any, out: Any) -> None:
+def _rate(equation: Equation, y: np.ndarray, out: np.ndarray) -> None:
     """The rate of change of (q, q')."""
+    linear, force, sensed, pushed, laws = equation
     size = len(force)
     for i in range(size):
         out[i] = y[size + i]

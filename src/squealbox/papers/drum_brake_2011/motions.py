@@ -12,6 +12,7 @@ import numpy as np
 
 from squealbox.papers.drum_brake_2011.cases import BRAKING, DURATION, Case
 from squealbox.papers.drum_brake_2011.claims import EXACT, RAW
+from squealbox.system import DesignOrSystem
 from squealbox.transient import Method, Trajectory, Verdict, simulate, verdict
 
 SAMPLES = 5001  # every 10 us, about 50 in a period
@@ -136,7 +137,7 @@ class Studies:
                 return free  # it never came down to the floor, so the floor changes nothing
         return self._motion(run.design(self.case))
 
-    def _motion(self, design: Any) -> Motion:
+    def _motion(self, design: DesignOrSystem) -> Motion:
         if design not in self.made:
             self.made[design] = judged(simulate(design, DURATION, "rest", self.samples, self.method, self.contact))
         return self.made[design]

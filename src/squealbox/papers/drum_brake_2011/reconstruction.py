@@ -83,7 +83,7 @@ def reconstruct(
     tell = progress or (lambda what, share: None)
     searched = search(out, workers, lambda share: tell("members of the family", share))
 
-    def table(name: str, rows: Any, analysis: Any, what: str) -> Any:
+    def table(name: str, rows: np.ndarray, analysis: Any, what: str) -> Any:
         space = zipped({key: rows[:, i] for i, key in enumerate(NAMES)})
         folder = None if out is None else os.path.join(os.fspath(out), name)
         return sweep(
@@ -108,7 +108,7 @@ def reconstruct(
     return Reconstruction(searched, chosen, named, (len(coarse), len(fine)), len(meeting))
 
 
-def finer(rows: Any) -> Any:
+def finer(rows: np.ndarray) -> Any:
     """Members on the finer grid around these that meet as many of the eight claims, columns as in `NAMES`."""
     if not len(rows):
         return np.empty((0, len(NAMES)))
@@ -125,7 +125,7 @@ def finer(rows: Any) -> Any:
     return np.array(found)
 
 
-def _evenly(rows: Any) -> Any:
+def _evenly(rows: np.ndarray) -> Any:
     """At most `JUDGED` of the rows, evenly among them."""
     return rows[np.unique(np.linspace(0, len(rows) - 1, min(len(rows), JUDGED)).round().astype(int))]
 
@@ -135,17 +135,17 @@ def _case(variant: Variant) -> Any:
     return MemberCase(front, belts, loads, share, float(variant.alpha), float(variant.sliding_speed))
 
 
-def _pairs(table: Any) -> Any:
+def _pairs(table: np.ndarray) -> Any:
     return np.stack([np.asarray(table["low"]), np.asarray(table["high"])], axis=-1)
 
 
-def _miss(pairs: Any) -> Any:
+def _miss(pairs: np.ndarray) -> Any:
     """How far the two amplitudes are from the published ones, as a share, in the better measure."""
     wanted = np.array([value for value, _ in WANTED.values()])
     off = [np.max(np.abs(halves * pairs / wanted - 1.0), axis=-1) for halves in AMPLITUDES.values()]
     return np.where(np.isfinite(off[0]), np.minimum(*off), np.inf)
 
 
-def _meets(pairs: Any) -> Any:
+def _meets(pairs: np.ndarray) -> Any:
     wanted, slack = (np.array(each) for each in zip(*WANTED.values(), strict=True))
     return np.any([np.all(np.abs(h * pairs - wanted) <= SLACK * slack, axis=-1) for h in AMPLITUDES.values()], axis=0)

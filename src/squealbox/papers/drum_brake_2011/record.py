@@ -260,7 +260,7 @@ def _markdown_row(reading: str, part: Record) -> str:
     return f"| {reading} | {part['meaning']} | {published} | {tolerance} | {' | '.join(cells)} |"
 
 
-def _finite(value: Any) -> Any:
+def _finite(value: object) -> Any:
     if isinstance(value, dict):
         return {key: _finite(item) for key, item in value.items()}
     if isinstance(value, (list, tuple)):

@@ -15,6 +15,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.compiled import translated
 from squealbox.designs import DrumBrake
@@ -22,10 +23,10 @@ from squealbox.papers.drum_brake_2011 import marching
 from squealbox.papers.drum_brake_2011.cases import DURATION, Case
 from squealbox.papers.drum_brake_2011.claims import EXACT, RAW
 from squealbox.papers.drum_brake_2011.motions import METHODS, SAMPLES, judged
-from squealbox.signals import slope
+from squealbox.signals import MotionLike, slope
 from squealbox.stability import complex_modes
-from squealbox.system import as_system, linearise
-from squealbox.transient import simulate, verdict
+from squealbox.system import DesignOrSystem, as_system, linearise
+from squealbox.transient import Trajectory, simulate, verdict
 
 RELATIVE = 1e-3
 SHORTEST = 1e-9  # s: a step that crosses a reversal of sgn is kept once it is this short
@@ -76,7 +77,7 @@ class Plain:
         """Accepted steps."""
         return self.t.size - 1
 
-    def at(self, times: Any) -> "Plain":
+    def at(self, times: ArrayLike) -> "Plain":
         """The same at other times, by the cubic through values and rates at both ends of a step."""
         from scipy.interpolate import CubicHermiteSpline
 
@@ -84,7 +85,7 @@ class Plain:
         return Plain(np.asarray(times), spline(times), spline(times, 1))
 
 
-def ode23(design: Any, duration: float = DURATION, rtol: float = RELATIVE) -> Plain:
+def ode23(design: DesignOrSystem, duration: float = DURATION, rtol: float = RELATIVE) -> Plain:
     """The motion from rest as the programs of 2011 integrate it: plain sgn, one error for the worst of all values.
 
     A step is kept when h |e_i| <= rtol max(|y_i|, a_i) for every value, with the absolute tolerance rtol a_i that
@@ -98,10 +99,10 @@ def ode23(design: Any, duration: float = DURATION, rtol: float = RELATIVE) -> Pl
     sensed = np.array([np.concatenate([each.n, each.t]) for each in contacts])
     pushed = np.array([inverse @ each.d for each in contacts])
     laws = np.array([[each.N0, each.V, each.law.static, each.law.slope] for each in contacts], dtype=float)
-    given = linear, inverse @ system.load, sensed, pushed, laws, float(duration), float(rtol), SHORTEST
+    equation, given = (linear, inverse @ system.load, sensed, pushed, laws), (float(duration), float(rtol), SHORTEST)
     while True:
         t, y = np.empty(room), np.empty((room, 2 * size))
-        count = march(*given, t, y, np.zeros((4, 2 * size)), np.zeros((3, 2 * size)))
+        count = march(equation, *given, t, y, np.zeros((4, 2 * size)), np.zeros((3, 2 * size)))
         if count <= room:
             return Plain(t[:count], y[:count, :size], y[:count, size:])
         room *= 4
@@ -128,7 +129,7 @@ def decays(case: Case, mu: float = MU) -> list[Decay]:
     return found
 
 
-def decay_of_modes(design: Any, motion: Any, begin: float, end: float) -> tuple[float, float]:
+def decay_of_modes(design: DesignOrSystem, motion: MotionLike, begin: float, end: float) -> tuple[float, float]:
     """Decay rates [1/s] of the lower and the upper mode in a motion about steady sliding, from `begin` to `end` [s].
 
     The share of mode j is w_j^H ((lambda_j M + C) (q - q0) + M q'), with its left mode w_j: while nothing reverses it
@@ -176,7 +177,7 @@ def damping_of_the_table() -> dict[str, tuple[float, float]]:
     }
 
 
-def _persists(motion: Any) -> bool | None:
+def _persists(motion: Trajectory) -> bool | None:
     if not isinstance(motion, Plain):
         return judged(motion).persists
     found = verdict(motion.at(np.linspace(0.0, DURATION, SAMPLES)), dof=0)

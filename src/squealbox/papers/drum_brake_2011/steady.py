@@ -6,9 +6,10 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.designs import DrumBrake
 from squealbox.papers.drum_brake_2011.cases import FRICTION, MAP_ANGLES, SPEED, Case
 from squealbox.stability import ComplexModes, complex_modes, critical_value, spectrum, stability_map
-from squealbox.system import as_system, linearise
+from squealbox.system import DesignOrSystem, as_system, linearise
 
 MU_RANGE = (0.01, 1.0)
 ROOT_STEPS = 12  # of the Illinois rule on an edge of the map: to the last digits
@@ -78,7 +79,7 @@ def pressure_map(case: Case, step: float = 1.0, mu: float = FRICTION, traced: bo
     return PressureMap(angles, grown, _boundary(design, angles, grown))
 
 
-def _boundary(design: Any, angles: Any, grown: Any) -> list[Any]:
+def _boundary(design: DrumBrake, angles: np.ndarray, grown: np.ndarray) -> list[Any]:
     """The curves of zero growth through the map, each (k, 2) [deg].
 
     Every point lies on an edge of the grid whose ends differ in sign, and is found there by the rule of Illinois.
@@ -92,7 +93,7 @@ def _boundary(design: Any, angles: Any, grown: Any) -> list[Any]:
     index = (np.concatenate(lines) - angles[0]) / (angles[1] - angles[0])  # one of both is whole, the other a half
     low, high = angles[np.floor(index).astype(int)], angles[np.ceil(index).astype(int)]
 
-    def growth_at(points: Any) -> Any:
+    def growth_at(points: np.ndarray) -> Any:
         theta1, theta2 = np.deg2rad(points).T
         return growth(design.replace({"theta1": theta1, "theta2": theta2}))
 
@@ -119,12 +120,12 @@ def frequencies(modes: ComplexModes) -> Any:
     return modes.angular_frequency[..., :2]
 
 
-def growth(design: Any) -> Any:
+def growth(design: DesignOrSystem) -> Any:
     """The largest growth rate [1/s], shape of the design's arrays."""
     return np.max(spectrum(linearise(as_system(design))).real, axis=-1)
 
 
-def _onset(design: Any, parameter: str, bounds: tuple[float, float]) -> Onset:
+def _onset(design: DrumBrake, parameter: str, bounds: tuple[float, float]) -> Onset:
     found = critical_value(design, parameter, bounds)
     if not found.outcome.ok:
         return Onset()

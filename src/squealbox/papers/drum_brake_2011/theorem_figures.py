@@ -109,7 +109,7 @@ def onset() -> "Figure":
         return figure_of(axes)
 
 
-def _mean(total: Any) -> Any:
+def _mean(total: float | np.ndarray) -> Any:
     """A sum of two squared frequencies as their mean frequency [10^3 rad/s]."""
     return 1e-3 * np.sqrt(0.5 * total)
 

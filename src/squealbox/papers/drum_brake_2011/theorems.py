@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.designs import DrumBrake
 from squealbox.papers.drum_brake_2011.cases import RESOLUTION
@@ -85,7 +86,7 @@ def trace_bounds() -> dict[str, Band]:
     }
 
 
-def which_mode_decays_more(difference: Any, a: float, d: float) -> Any:
+def which_mode_decays_more(difference: np.ndarray, a: float, d: float) -> Any:
     """The sign of p_upper - p_lower: which of two modes is damped more, by the difference c22 - c11 of the damping.
 
     Lemma. From the four equations of this module, with D = c22 - c11, E = p_lower - p_upper and S = c11 + c22,
@@ -119,7 +120,9 @@ def growing_mode_at_onset() -> str:
     return "lower" if published + RESOLUTION < middle else "either"
 
 
-def damping_difference(at_low: Any, load: Any, c1: float | None = None, c2: float | None = None) -> Any:
+def damping_difference(
+    at_low: float | np.ndarray, load: float | np.ndarray, c1: float | None = None, c2: float | None = None
+) -> Any:
     """C22 - c11 [N s/m] at `load` [N], given what it is `at_low`, at the table's 1 kN.
 
     Theorem (mu-5 and N-2 exclude each other in the form of Eq. (3)). There c11 and c22 are the table's c1 and c2 plus
@@ -137,7 +140,7 @@ def damping_difference(at_low: Any, load: Any, c1: float | None = None, c2: floa
     return zero + (at_low - zero) * load / brake.load1
 
 
-def least_decay(at_rest: Any, at_ten: Any, load: float) -> Any:
+def least_decay(at_rest: ArrayLike, at_ten: ArrayLike, load: float) -> Any:
     """The decay rate [1/s] of a mode at `load` [N] in (0, 10 kN), from those without load and at 10 kN.
 
     Theorem (V-1 and N-1 exclude each other at one speed). In Eq. (3) load enters the damping only, in proportion. To

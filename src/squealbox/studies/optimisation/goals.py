@@ -7,6 +7,7 @@ from typing import Any, Literal
 import numpy as np
 
 from squealbox.distributions import Distribution, Lognormal
+from squealbox.family import DesignOrRecipe
 from squealbox.parameters import ParameterError
 from squealbox.scatter import Scatter
 from squealbox.studies.quantity import Quantity, as_quantity, evaluate
@@ -52,7 +53,7 @@ class Goal:
         """The goal in words, for tables and axes."""
         return _named(self.quantity, self.over, self.share)
 
-    def measure(self, values: Any) -> Any:
+    def measure(self, values: np.ndarray) -> Any:
         """The number wanted of samples (candidates, samples): shape (candidates,)."""
         return measured(self.quantity, values, self.over, self.share, self.factor)
 
@@ -80,16 +81,16 @@ class Constraint:
         """The constrained number in words."""
         return _named(self.quantity, self.over, self.share)
 
-    def measure(self, values: Any) -> Any:
+    def measure(self, values: np.ndarray) -> Any:
         """The constrained number of samples (candidates, samples): shape (candidates,)."""
         return measured(self.quantity, values, self.over, self.share, 1.0 if np.isfinite(self.high) else -1.0)
 
-    def violation(self, measure: Any) -> Any:
+    def violation(self, measure: np.ndarray) -> Any:
         """How far the number is outside, zero or below where it is within."""
         return np.maximum(self.low - measure, measure - self.high)
 
 
-def measured(quantity: Quantity, values: Any, over: Over, share: float, factor: float) -> Any:
+def measured(quantity: Quantity, values: np.ndarray, over: Over, share: float, factor: float) -> Any:
     """What is taken of samples (candidates, samples); an unknown sample counts as squeal, or as the worst value."""
     if over == "nominal":
         return values[:, 0]
@@ -110,14 +111,16 @@ class Candidates:
     and not samples.
     """
 
-    def __init__(self, design: Any, names: list[str], scatter: Scatter | None, samples: int, seed: int) -> None:
+    def __init__(
+        self, design: DesignOrRecipe | None, names: list[str], scatter: Scatter | None, samples: int, seed: int
+    ) -> None:
         self.design, self.names = design, names
         self.sample = {} if scatter is None else scatter.sample(samples, "sobol", seed)
         self.given: Mapping[str, Distribution] = {} if scatter is None else scatter.distributions
         self.size = samples
         self.evaluations = 0
 
-    def measures(self, asked: list[Any], x: Any) -> Any:
+    def measures(self, asked: list[Any], x: np.ndarray) -> Any:
         """The number of each goal or constraint at candidates (count, variables): shape (count, len(asked))."""
         columns = []
         seen: dict[tuple[int, bool], Any] = {}
@@ -128,7 +131,7 @@ class Candidates:
             columns.append(each.measure(seen[key]))
         return np.stack(columns, axis=-1)
 
-    def _values(self, quantity: Quantity, x: Any, *, nominal: bool) -> Any:
+    def _values(self, quantity: Quantity, x: np.ndarray, *, nominal: bool) -> Any:
         points: dict[str, Any] = {}
         count = len(x)
         size = 1 if nominal else self.size
@@ -140,7 +143,7 @@ class Candidates:
         self.evaluations += count * size
         return evaluate(self.design, quantity, points, strict=False).reshape(count, size)
 
-    def _about(self, name: str, varied: Any, sample: Any) -> Any:
+    def _about(self, name: str, varied: np.ndarray | None, sample: np.ndarray) -> Any:
         """A sample of a parameter, about its varied value where it is varied."""
         if varied is None:
             return sample

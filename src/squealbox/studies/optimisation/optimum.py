@@ -13,7 +13,7 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 
 from squealbox.arguments import public
-from squealbox.family import unit_of
+from squealbox.family import DesignOrRecipe, unit_of
 from squealbox.parameters import ParameterError, known_names
 from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.scatter import Scatter, Scattered, as_scatter
@@ -111,7 +111,7 @@ class Optimum(Result):
 
 @public(design=None)
 def optimise(
-    design: Any,
+    design: DesignOrRecipe | None,
     variables: Mapping[str, tuple[float, float]],
     goals: Goal | Sequence[Goal],
     constraints: Sequence[Constraint] = (),
@@ -194,7 +194,7 @@ def _check(goals: list[Goal], constraints: list[Constraint], scatter: Scatter | 
         raise ParameterError("optimise", "method", method, known_names(str(method), list(METHODS)))
 
 
-def _before(design: Any, names: list[str]) -> Any:
+def _before(design: object, names: list[str]) -> Any:
     """The varied parameters of the design given; NaN where there is none."""
     if hasattr(design, "value_of"):
         return np.array([float(design.value_of(name)) for name in names])
@@ -214,14 +214,14 @@ def _limits(about: Mapping[str, Any]) -> str:
     return ", ".join(f"{word} {end:g}" for word, end in ends if end is not None)
 
 
-def _compromise(costs: Any) -> int:
+def _compromise(costs: np.ndarray) -> int:
     """The row nearest to the best of every column, each scaled by its range."""
     costs = np.where(np.isfinite(costs), costs, 1e30)
     low, width = np.min(costs, axis=0), np.ptp(costs, axis=0)
     return int(np.argmin(np.linalg.norm((costs - low) / np.where(width > 0.0, width, 1.0), axis=1)))
 
 
-def _outcome(goals: Any, measures: Any, constraints: list[Constraint]) -> Outcome:
+def _outcome(goals: np.ndarray, measures: np.ndarray, constraints: list[Constraint]) -> Outcome:
     if not np.all(np.isfinite(goals)):
         return Outcome("no_answer", "a goal is unknown or infinite at the best designs found: narrow the bounds")
     if not constraints:

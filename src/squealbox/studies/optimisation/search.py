@@ -1,8 +1,10 @@
 """The searches behind `optimise`: SciPy for one goal, pymoo for several."""
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.extras import extra
 from squealbox.studies.optimisation.goals import Candidates, Constraint, Goal
@@ -13,7 +15,12 @@ Effort = tuple[int, int, int]  # population, generations, seed
 
 
 def best_of_one(
-    candidates: Candidates, goal: Goal, constraints: list[Constraint], box: Any, start: Any, effort: Effort
+    candidates: Candidates,
+    goal: Goal,
+    constraints: list[Constraint],
+    box: np.ndarray,
+    start: np.ndarray | None,
+    effort: Effort,
 ) -> Any:
     """The best point for one goal, shape (1, variables); from `start` alone when it is given."""
     if start is None:
@@ -28,13 +35,13 @@ def best_of_one(
     return both[1:] if better else both[:1]
 
 
-def _evolved(candidates: Candidates, goal: Goal, constraints: list[Constraint], box: Any, effort: Effort) -> Any:
+def _evolved(candidates: Candidates, goal: Goal, constraints: list[Constraint], box: np.ndarray, effort: Effort) -> Any:
     from scipy.optimize import NonlinearConstraint, differential_evolution
 
     population, generations, seed = effort
     raised: list[Exception] = []  # SciPy says something else in its place
 
-    def cost(x: Any) -> Any:
+    def cost(x: np.ndarray) -> Any:
         columns = x.T if x.ndim == 2 else x[None]
         try:
             found = _costs(candidates, [goal], columns)[:, 0]
@@ -43,7 +50,7 @@ def _evolved(candidates: Candidates, goal: Goal, constraints: list[Constraint], 
             raise
         return found if x.ndim == 2 else float(found[0])
 
-    def kept(x: Any) -> Any:
+    def kept(x: np.ndarray) -> Any:
         columns = x.T if x.ndim == 2 else x[None]
         found = _finite(candidates.measures(constraints, columns))
         return found.T if x.ndim == 2 else found[0]
@@ -63,23 +70,25 @@ def _evolved(candidates: Candidates, goal: Goal, constraints: list[Constraint], 
     return np.asarray(found.x)
 
 
-def _polished(candidates: Candidates, goal: Goal, constraints: list[Constraint], box: Any, start: Any) -> Any:
+def _polished(
+    candidates: Candidates, goal: Goal, constraints: list[Constraint], box: np.ndarray, start: np.ndarray
+) -> Any:
     """SLSQP from `start` in variables scaled to their ranges, with differences of a batch for its derivatives."""
     from scipy.optimize import minimize
 
     low, width = box[:, 0], np.ptp(box, axis=1)
 
-    def place(u: Any) -> Any:
+    def place(u: ArrayLike) -> Any:
         return np.clip(low + np.atleast_2d(u) * width, box[:, 0], box[:, 1])
 
     size = abs(float(_costs(candidates, [goal], start[None])[0, 0])) or 1.0
     rows = [(i, sign, end) for i, each in enumerate(constraints) for sign, end in ((1.0, each.low), (-1.0, each.high))]
     rows = [row for row in rows if np.isfinite(row[2])]
 
-    def cost(u: Any) -> Any:
+    def cost(u: np.ndarray) -> Any:
         return _costs(candidates, [goal], place(u))[:, 0] / size
 
-    def slack(u: Any) -> Any:
+    def slack(u: np.ndarray) -> Any:
         found = _finite(candidates.measures(constraints, place(u)))
         return np.stack([sign * (found[:, i] - end) / max(abs(end), 1e-12) for i, sign, end in rows], axis=-1)
 
@@ -91,7 +100,7 @@ def _polished(candidates: Candidates, goal: Goal, constraints: list[Constraint],
     return place(found.x)[0] if np.all(np.isfinite(found.x)) else start
 
 
-def _slopes(function: Any, u: Any, step: float = 1e-6) -> Any:
+def _slopes(function: Callable[[Any], Any], u: np.ndarray, step: float = 1e-6) -> Any:
     """Central differences of a batched function (one-sided at the bounds): ([outputs,] variables)."""
     shifts = step * np.eye(u.size)
     up, down = np.minimum(u + shifts, 1.0), np.maximum(u - shifts, 0.0)
@@ -102,7 +111,7 @@ def _slopes(function: Any, u: Any, step: float = 1e-6) -> Any:
 
 
 def pareto_front(
-    candidates: Candidates, goals: list[Goal], constraints: list[Constraint], box: Any, effort: Effort
+    candidates: Candidates, goals: list[Goal], constraints: list[Constraint], box: np.ndarray, effort: Effort
 ) -> Any:
     """Designs none of which betters another in every goal, shape (designs, variables), by NSGA-II."""
     with extra("studies"):
@@ -117,7 +126,7 @@ def pareto_front(
             count = 1 + 2 * len(constraints)  # the first: every goal has an answer
             super().__init__(n_var=len(box), n_obj=len(goals), n_ieq_constr=count, xl=box[:, 0], xu=box[:, 1])
 
-        def _evaluate(self, x: Any, out: dict[str, Any], *_: Any, **__: Any) -> None:
+        def _evaluate(self, x: np.ndarray, out: dict[str, Any], *_: Any, **__: Any) -> None:
             cost = _costs(candidates, goals, x)
             kept = [np.where(np.any(np.abs(cost) >= WORST, axis=1), 1.0, -1.0)[:, None]]
             if constraints:
@@ -135,15 +144,15 @@ def pareto_front(
     return x[np.lexsort(np.atleast_2d(found.F).T[::-1])]
 
 
-def _costs(candidates: Candidates, goals: list[Goal], x: Any) -> Any:
+def _costs(candidates: Candidates, goals: list[Goal], x: np.ndarray) -> Any:
     return _finite(candidates.measures(goals, x) * np.array([goal.factor for goal in goals]))
 
 
-def _finite(values: Any) -> Any:
+def _finite(values: np.ndarray) -> Any:
     return np.clip(np.where(np.isnan(values), WORST, values), -WORST, WORST)
 
 
-def _missed(candidates: Candidates, constraints: list[Constraint], x: Any) -> Any:
+def _missed(candidates: Candidates, constraints: list[Constraint], x: np.ndarray) -> Any:
     """The largest relative violation at points (count, variables); 0 when everything is kept."""
     if not constraints:
         return np.zeros(len(x))

@@ -12,6 +12,7 @@ cross-validation in which the terms are chosen anew in each fold. A growth rate 
 no polynomial follows: use a smooth quantity, such as the margin of friction.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -20,10 +21,11 @@ import numpy as np
 from squealbox.arguments import public
 from squealbox.distributions import Lognormal, Normal
 from squealbox.extras import extra
+from squealbox.family import DesignOrRecipe
 from squealbox.parameters import ParameterError
 from squealbox.result import OF_QUANTITY, Array, Outcome, Result, quantity
 from squealbox.scatter import Scatter, Scattered, as_scatter
-from squealbox.studies.quantity import Quantity, as_quantity, evaluate, input_of
+from squealbox.studies.quantity import Quantity, QuantityLike, as_quantity, evaluate, input_of
 from squealbox.studies.uncertainty.sobol import finite_outcome
 
 FOLDS = 10
@@ -53,7 +55,7 @@ class Surrogate(Result):
     table_over: ClassVar = ("point",)
     headings: ClassVar = {"points": "{}", "held_out": "said of it unseen"}
 
-    def __call__(self, at: Any) -> Any:
+    def __call__(self, at: Mapping[str, Any]) -> Any:
         """The surrogate at named values (arrays broadcast together), in the unit of the quantity."""
         scatter: Scatter = self.inputs["scatter"]
         columns = np.broadcast_arrays(*(np.asarray(at[name], dtype=float) for name in self.names))
@@ -140,9 +142,9 @@ class Surrogate(Result):
 
 @public(design=None)
 def polynomial_chaos(
-    design: Any,
+    design: DesignOrRecipe | None,
     scatter: Scattered,
-    quantity: Any,
+    quantity: QuantityLike,
     *,
     samples: int = 256,
     degree: int | None = None,
@@ -194,7 +196,7 @@ def polynomial_chaos(
     )
 
 
-def germs(scatter: Scatter, points: Any) -> Any:
+def germs(scatter: Scatter, points: np.ndarray) -> Any:
     """The germs of points (..., d): independent standard normal or uniform (-1, 1) numbers, the same shape."""
     from scipy.special import ndtr
 
@@ -202,7 +204,7 @@ def germs(scatter: Scatter, points: Any) -> Any:
     return np.where(_hermite(scatter), z, 2.0 * ndtr(z) - 1.0)
 
 
-def terms(germ: Any, hermite: Any, degrees: Any) -> Any:
+def terms(germ: np.ndarray, hermite: np.ndarray, degrees: np.ndarray) -> Any:
     """The polynomials of unit variance at germs (..., d): shape (..., terms)."""
     from math import factorial
 
@@ -232,7 +234,7 @@ def _degrees(size: int) -> list[int]:
 
 
 def _expansion(
-    scatter: Scatter, columns: Any, values: Any, degree: int, folds: int, seed: int
+    scatter: Scatter, columns: np.ndarray, values: np.ndarray, degree: int, folds: int, seed: int
 ) -> tuple[Any, Any, Any, float]:
     """Coefficients, degrees, held-out predictions and Q2 for one total degree."""
     germ, hermite = germs(scatter, columns), _hermite(scatter)
@@ -246,7 +248,7 @@ def _expansion(
     return (*_fit(germ, values, hermite, degree), held_out, q2)
 
 
-def _fit(germ: Any, values: Any, hermite: Any, degree: int) -> tuple[Any, Any]:
+def _fit(germ: np.ndarray, values: np.ndarray, hermite: np.ndarray, degree: int) -> tuple[Any, Any]:
     """Coefficients and degrees of the terms that least angle regression chooses."""
     with extra("studies"):
         import openturns as ot

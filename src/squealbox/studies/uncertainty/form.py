@@ -18,11 +18,11 @@ import numpy as np
 
 from squealbox.arguments import public
 from squealbox.extras import extra
-from squealbox.family import unit_of
+from squealbox.family import DesignOrRecipe, unit_of
 from squealbox.parameters import ParameterError
 from squealbox.result import OF_QUANTITY, Array, Outcome, Result, quantity
 from squealbox.scatter import Scatter, Scattered, as_scatter
-from squealbox.studies.quantity import as_quantity, input_of
+from squealbox.studies.quantity import QuantityLike, as_quantity, input_of
 from squealbox.studies.uncertainty.importance import wide_sample
 from squealbox.studies.uncertainty.limit_state import LimitState, seeded
 
@@ -91,9 +91,9 @@ class DesignPoint(Result):
 
 @public(design=None)
 def form(
-    design: Any,
+    design: DesignOrRecipe | None,
     scatter: Scattered,
-    quantity: Any,
+    quantity: QuantityLike,
     *,
     samples: int = 4000,
     seed: int = 0,
@@ -164,7 +164,7 @@ def form(
     )
 
 
-def _search(state: LimitState, iterations: int, seed: int, start: Any) -> tuple[Any, Outcome | None]:
+def _search(state: LimitState, iterations: int, seed: int, start: np.ndarray) -> tuple[Any, Outcome | None]:
     """z*, and the outcome when the search broke down."""
     with extra("studies"):
         import openturns as ot
@@ -188,7 +188,7 @@ def _search(state: LimitState, iterations: int, seed: int, start: Any) -> tuple[
         return np.array(algorithm.getResult().getStandardSpaceDesignPoint()), None
 
 
-def _verdict(state: LimitState, z: Any) -> Outcome:
+def _verdict(state: LimitState, z: np.ndarray) -> Outcome:
     """Is z on the boundary of squeal, and nearest to 0 along its own direction?"""
     length = float(np.linalg.norm(z))
     direction = z / length if length > 0.0 else np.eye(state.dimension)[0]
@@ -210,7 +210,7 @@ def lognormal_interval(value: float, variation: float, level: float) -> tuple[fl
     return value * float(np.exp(-half)), min(value * float(np.exp(half)), 1.0)
 
 
-def _row(scatter: Scatter, z: Any) -> Any:
+def _row(scatter: Scatter, z: np.ndarray) -> Any:
     return np.array([float(value) for value in scatter.from_normal(z).values()])
 
 

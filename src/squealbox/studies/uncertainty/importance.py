@@ -40,7 +40,7 @@ class Mixture:
         noise = rng.standard_normal((count, self.centres.shape[1]))
         return self.centres[parts] + self.widths[parts, None] * noise
 
-    def likelihood(self, points: Any) -> Any:
+    def likelihood(self, points: np.ndarray) -> Any:
         """phi(z)/h(z), shape (n,)."""
         from scipy.special import logsumexp
 
@@ -58,7 +58,7 @@ class WideSample:
     weights: Any
     width: float
 
-    def starts(self, known: Any) -> Iterator[Any]:
+    def starts(self, known: np.ndarray | None) -> Iterator[Any]:
         """Squealing points nearest to 0 in directions that differ from each other and from `known`."""
         taken = [] if known is None else [known / max(float(np.linalg.norm(known)), 1e-300)]
         length = np.linalg.norm(self.points, axis=1)
@@ -70,7 +70,7 @@ class WideSample:
                 count += 1
                 yield self.points[i]
 
-    def probability(self, state: LimitState, z: Any, count: int, seed: int) -> tuple[float, float]:
+    def probability(self, state: LimitState, z: np.ndarray, count: int, seed: int) -> tuple[float, float]:
         """P and its coefficient of variation from a second sample."""
         rng = np.random.default_rng([seed, 2])
         size = len(z)
@@ -92,7 +92,7 @@ class WideSample:
         return mean, error / mean if mean > 0.0 else np.nan
 
 
-def wide_sample(state: LimitState, z: Any, count: int, seed: int) -> WideSample:
+def wide_sample(state: LimitState, z: np.ndarray | None, count: int, seed: int) -> WideSample:
     """The first sample: half about the design point `z` (None when there is none yet), half as wide as it is far."""
     rng = np.random.default_rng([seed, 1])
     size = state.dimension

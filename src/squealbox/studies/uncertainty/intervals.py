@@ -12,12 +12,13 @@ from itertools import product
 from typing import Any, ClassVar
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.arguments import public
-from squealbox.family import bounds_of
+from squealbox.family import DesignOrRecipe, bounds_of
 from squealbox.parameters import ParameterError
 from squealbox.result import OF_QUANTITY, Array, Outcome, Result, quantity
-from squealbox.studies.quantity import as_quantity, evaluate, input_of
+from squealbox.studies.quantity import QuantityLike, as_quantity, evaluate, input_of
 
 MOST_CORNERS = 12  # parameters up to which every corner of the box is looked at
 
@@ -73,7 +74,12 @@ class IntervalBounds(Result):
 
 @public(design=None)
 def interval_bounds(
-    design: Any, box: Mapping[str, tuple[float, float]], quantity: Any, *, seed: int = 0, runs: int = 3
+    design: DesignOrRecipe | None,
+    box: Mapping[str, tuple[float, float]],
+    quantity: QuantityLike,
+    *,
+    seed: int = 0,
+    runs: int = 3,
 ) -> IntervalBounds:
     """Least and largest value of `quantity` while each parameter stays within its interval.
 
@@ -94,7 +100,7 @@ def interval_bounds(
     asked = as_quantity(quantity)
     names, ends = checked_box(box, "interval_bounds")
 
-    def values_at(points: Any) -> Any:
+    def values_at(points: ArrayLike) -> Any:
         return evaluate(design, asked, dict(zip(names, np.asarray(points).T, strict=True)))
 
     middle = values_at(np.mean(ends, axis=1)[None])[0]
@@ -118,14 +124,14 @@ def interval_bounds(
     )
 
 
-def checked_box(box: Any, owner: str) -> tuple[list[str], Any]:
+def checked_box(box: Mapping[str, Any], owner: str) -> tuple[list[str], Any]:
     """Names and ends of a box, shape (d, 2). Raises `ParameterError` when it is none."""
     if not isinstance(box, Mapping) or not box:
         raise ParameterError(owner, "box", box, "names with (low, high) each, at least one")
     return [str(name) for name in box], np.array([bounds_of(owner, str(name), ends) for name, ends in box.items()])
 
 
-def _extremes(values_at: Callable[[Any], Any], ends: Any, seed: int) -> list[tuple[float, Any]]:
+def _extremes(values_at: Callable[[Any], Any], ends: np.ndarray, seed: int) -> list[tuple[float, Any]]:
     """(value, place) of the least and of the largest value that one run finds."""
     corners = np.array(list(product(*ends))) if len(ends) <= MOST_CORNERS else np.mean(ends, axis=1)[None]
     at_corners = values_at(corners)
@@ -140,10 +146,10 @@ def _extremes(values_at: Callable[[Any], Any], ends: Any, seed: int) -> list[tup
     return found
 
 
-def _least(values_at: Callable[[Any], Any], sign: float, ends: Any, seed: int) -> tuple[float, Any]:
+def _least(values_at: Callable[[Any], Any], sign: float, ends: np.ndarray, seed: int) -> tuple[float, Any]:
     from scipy.optimize import differential_evolution
 
-    def goal(x: Any) -> Any:
+    def goal(x: np.ndarray) -> Any:
         values = sign * np.atleast_1d(values_at(np.atleast_2d(x.T)))
         values = np.where(np.isnan(values), np.inf, values)
         return values if x.ndim == 2 else float(values[0])

@@ -5,8 +5,10 @@ from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.extras import extra
+from squealbox.family import DesignOrRecipe
 from squealbox.scatter import Scatter
 from squealbox.studies.quantity import Quantity, evaluate
 
@@ -16,7 +18,7 @@ FAR = 1e30  # stands for an infinite distance, which differences cannot be taken
 class LimitState:
     """g(z) = -excess(quantity at x(z)): negative squeals; counts its evaluations and those without an answer."""
 
-    def __init__(self, design: Any, scatter: Scatter, quantity: Quantity) -> None:
+    def __init__(self, design: DesignOrRecipe | None, scatter: Scatter, quantity: Quantity) -> None:
         self.design, self.scatter, self.quantity = design, scatter, quantity
         self.evaluations = 0
         self.unknown = 0
@@ -29,7 +31,7 @@ class LimitState:
         """Number of parameters that scatter."""
         return len(self.scatter.names)
 
-    def values(self, z: Any) -> Any:
+    def values(self, z: ArrayLike) -> Any:
         """The quantity at points `z`, shape (n, d): shape (n,)."""
         z = np.atleast_2d(np.asarray(z, dtype=float))
         found = evaluate(self.design, self.quantity, self.scatter.from_normal(z), strict=False)
@@ -37,13 +39,13 @@ class LimitState:
         self.unknown += int(np.count_nonzero(np.isnan(found)))
         return found
 
-    def __call__(self, z: Any) -> Any:
+    def __call__(self, z: np.ndarray) -> Any:
         """g at points `z`, shape (n,); a point without an answer counts as far from squeal."""
         g = -self.quantity.excess(self.values(z))
         self.ties += int(np.count_nonzero(g == 0.0))
         return np.clip(np.where(np.isnan(g), FAR, g), -FAR, FAR)
 
-    def _kept(self, z: Any) -> Any:
+    def _kept(self, z: np.ndarray) -> Any:
         try:
             return self(z)
         except Exception as error:

@@ -13,10 +13,11 @@ import numpy as np
 
 from squealbox.arguments import public
 from squealbox.extras import extra
+from squealbox.family import DesignOrRecipe
 from squealbox.parameters import ParameterError
 from squealbox.result import OF_QUANTITY, Array, Outcome, Result, quantity
 from squealbox.scatter import Scattered, as_scatter
-from squealbox.studies.quantity import as_quantity, evaluate, input_of
+from squealbox.studies.quantity import QuantityLike, as_quantity, evaluate, input_of
 from squealbox.studies.uncertainty.sobol import finite_outcome, need_independent
 
 COVERED = 0.99  # central share of each distribution that the trajectories span
@@ -59,7 +60,13 @@ class MorrisEffects(Result):
 
 @public(design=None)
 def morris_effects(
-    design: Any, scatter: Scattered, quantity: Any, *, trajectories: int = 50, seed: int = 0, level: float = 0.95
+    design: DesignOrRecipe | None,
+    scatter: Scattered,
+    quantity: QuantityLike,
+    *,
+    trajectories: int = 50,
+    seed: int = 0,
+    level: float = 0.95,
 ) -> MorrisEffects:
     """Elementary effects of the independent parameters of `scatter` on `quantity`.
 

@@ -6,10 +6,11 @@ from typing import Any, ClassVar
 import numpy as np
 
 from squealbox.arguments import public
+from squealbox.family import DesignOrRecipe
 from squealbox.parameters import ParameterError
 from squealbox.result import OF_QUANTITY, Array, Outcome, Result, quantity
 from squealbox.scatter import Sampling, Scattered, as_scatter, unit_points
-from squealbox.studies.quantity import as_quantity, evaluate, input_of
+from squealbox.studies.quantity import QuantityLike, as_quantity, evaluate, input_of
 from squealbox.studies.uncertainty.replicates import binomial_interval, student_interval
 
 ENOUGH = 5  # squealing and quiet points that every replicate must hold before their spread is trusted
@@ -74,9 +75,9 @@ class SquealProbability(Result):
 
 @public(design=None)
 def squeal_probability(
-    design: Any,
+    design: DesignOrRecipe | None,
     scatter: Scattered,
-    quantity: Any,
+    quantity: QuantityLike,
     *,
     samples: int = 4096,
     method: Sampling = "sobol",
@@ -139,7 +140,9 @@ def squeal_probability(
     )
 
 
-def _interval(hits: Any, unknown: Any, estimates: Any, each: int, level: float) -> tuple[float, float, str]:
+def _interval(
+    hits: np.ndarray, unknown: np.ndarray, estimates: np.ndarray, each: int, level: float
+) -> tuple[float, float, str]:
     fewest = min(float(np.min(estimates)), 1.0 - float(np.max(estimates))) * each
     if estimates.size < 2 or fewest < ENOUGH:
         ends = binomial_interval(int(np.sum(hits)), int(np.sum(unknown)), hits.size, level)
@@ -150,15 +153,15 @@ def _interval(hits: Any, unknown: Any, estimates: Any, each: int, level: float) 
     return max(low, 0.0), min(high, 1.0), "replicates"
 
 
-def _replicates(estimates: Any) -> str:
+def _replicates(estimates: np.ndarray) -> str:
     return f"interval from {estimates.size} independent randomisations"
 
 
-def _span(low: Any, high: Any) -> str:
+def _span(low: float | np.ndarray, high: float | np.ndarray) -> str:
     return f"{float(low):.4g} to {float(high):.4g}"
 
 
-def _check(samples: Any, level: float, replicates: Any) -> None:
+def _check(samples: int, level: float, replicates: int) -> None:
     for name, value, least in (("samples", samples, 1), ("replicates", replicates, 2)):
         if isinstance(value, bool) or int(value) != value or value < least:
             raise ParameterError("squeal_probability", name, value, f"a whole number of at least {least}")

@@ -3,6 +3,7 @@
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 
 def binomial_interval(hits: int, unknown: int, count: int, level: float) -> tuple[float, float]:
@@ -18,7 +19,7 @@ def binomial_interval(hits: int, unknown: int, count: int, level: float) -> tupl
     return float(low), float(high)
 
 
-def student_interval(values: Any, level: float, axis: int = 0) -> tuple[Any, Any, Any]:
+def student_interval(values: ArrayLike, level: float, axis: int = 0) -> tuple[Any, Any, Any]:
     """Mean, low and high end over independent replicates along `axis`: mean -+ t s/sqrt(R), t of Student with R - 1.
 
     Each replicate is an unbiased estimate from its own randomisation, so this needs no assumption about the points
@@ -33,7 +34,7 @@ def student_interval(values: Any, level: float, axis: int = 0) -> tuple[Any, Any
     return mean, mean - half, mean + half
 
 
-def ratio_interval(parts: Any, wholes: Any, level: float) -> tuple[Any, Any, Any]:
+def ratio_interval(parts: ArrayLike, wholes: ArrayLike, level: float) -> tuple[Any, Any, Any]:
     """Ratio of the means of `parts` (R, d) and `wholes` (R,), with low and high end by the delta method.
 
     The mean of the ratios would be biased where both vary together; the ratio S of the means is so to order 1/R only,

@@ -14,10 +14,11 @@ from typing import Any
 import numpy as np
 
 from squealbox.arguments import public
+from squealbox.family import DesignOrRecipe
 from squealbox.parameters import ParameterError
 from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.scatter import Scatter, Scattered, as_scatter, unit_points
-from squealbox.studies.quantity import as_quantity, evaluate, input_of
+from squealbox.studies.quantity import QuantityLike, as_quantity, evaluate, input_of
 from squealbox.studies.uncertainty.replicates import ratio_interval
 
 
@@ -64,9 +65,9 @@ class SobolIndices(Result):
 
 @public(design=None)
 def sobol_indices(
-    design: Any,
+    design: DesignOrRecipe | None,
     scatter: Scattered,
-    quantity: Any,
+    quantity: QuantityLike,
     *,
     samples: int = 4096,
     seed: int = 0,
@@ -134,7 +135,7 @@ def need_independent(scatter: Scatter, owner: str) -> None:
         raise ParameterError(owner, "scatter", "correlated", expected)
 
 
-def finite_outcome(values: Any) -> Outcome:
+def finite_outcome(values: np.ndarray) -> Outcome:
     """The outcome for values of which some are NaN or infinite, with the counts as evidence."""
     unknown, infinite = int(np.count_nonzero(np.isnan(values))), int(np.count_nonzero(np.isinf(values)))
     message = (
@@ -143,13 +144,13 @@ def finite_outcome(values: Any) -> Outcome:
     return Outcome("unknown_values", message, unknown=unknown, infinite=infinite, points=int(values.size))
 
 
-def _varies(values: Any) -> Outcome:
+def _varies(values: np.ndarray) -> Outcome:
     if np.ptp(values) == 0.0:
         return Outcome("no_variance", f"the quantity is {values.flat[0]:g} at every point", value=float(values.flat[0]))
     return Outcome()
 
 
-def _shares(values: Any) -> tuple[Any, Any]:
+def _shares(values: np.ndarray) -> tuple[Any, Any]:
     """First-order and total part of the variance that each replicate finds, shape (replicates, parameters) each."""
     from scipy import stats
 
@@ -163,7 +164,7 @@ def _shares(values: Any) -> tuple[Any, Any]:
     return stacked[:, 0], stacked[:, 1]
 
 
-def _saltelli(count: int, size: int, rng: Any) -> Any:
+def _saltelli(count: int, size: int, rng: np.random.Generator) -> Any:
     """The points A, B and A with column i from B, shape (size + 2, count, size)."""
     both = unit_points(count, 2 * size, "sobol", rng)
     a, b = both[:, :size], both[:, size:]

@@ -14,10 +14,11 @@ import numpy as np
 
 from squealbox.arguments import public
 from squealbox.extras import extra
+from squealbox.family import DesignOrRecipe
 from squealbox.parameters import ParameterError
 from squealbox.result import OF_QUANTITY, Array, Outcome, Result, quantity
 from squealbox.scatter import Scattered, as_scatter
-from squealbox.studies.quantity import as_quantity, input_of
+from squealbox.studies.quantity import QuantityLike, as_quantity, input_of
 from squealbox.studies.uncertainty.form import lognormal_interval
 from squealbox.studies.uncertainty.limit_state import LimitState, seeded
 
@@ -66,9 +67,9 @@ class SubsetProbability(Result):
 
 @public(design=None)
 def subset_simulation(
-    design: Any,
+    design: DesignOrRecipe | None,
     scatter: Scattered,
-    quantity: Any,
+    quantity: QuantityLike,
     *,
     samples: int = 2000,
     runs: int = 4,
@@ -174,7 +175,7 @@ def _run(state: LimitState, samples: int, seed: int, smallest: float) -> tuple[f
         return float(result.getProbabilityEstimate()), float(result.getCoefficientOfVariation()), *levels
 
 
-def _larger(variation: float, estimates: Any) -> float:
+def _larger(variation: float, estimates: np.ndarray) -> float:
     """The variation of the mean as stated, or as the scatter of three or more runs shows it, whichever is larger."""
     if estimates.size < 3 or not np.isfinite(variation):
         return variation
