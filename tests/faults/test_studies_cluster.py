@@ -32,6 +32,7 @@ def address(tmp_path_factory):
     where = f"tcp://127.0.0.1:{port}"
     tests = os.path.dirname(os.path.dirname(__file__))
     environment = {**os.environ, "PYTHONPATH": tests, study_victim.JOURNAL: str(folder / "journal")}
+    environment["DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES"] = "1"  # of 3: each worker that dies starts another
     scheduler = ["scheduler", "--host", "127.0.0.1", "--port", str(port), "--no-dashboard"]
     worker = ["worker", where, "--nthreads", "1", "--no-dashboard"]
     processes = [
