@@ -24,6 +24,7 @@ from websockets.asyncio.client import connect
 
 from squealbox.workbench.frames import unframed
 
+BROWSER = shutil.which("chromium-headless-shell") or shutil.which("chromium")
 FLAGS = [
     "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking",
     "--disable-component-update", "--disable-sync",
@@ -90,7 +91,7 @@ def page(folder: Path) -> None:
     """From the command to the first page and to the first figure."""
     first, figure = [], []
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=FLAGS)
+        browser = playwright.chromium.launch(executable_path=BROWSER, args=FLAGS)
         for _ in range(3):
             begin = time.perf_counter()
             server, address, _ = started(folder)
@@ -111,7 +112,7 @@ def figures(folder: Path) -> None:
     """From a slider's move to a painted figure, once all that a page shows at first has been drawn."""
     server, address, _ = started(folder)
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=FLAGS)
+        browser = playwright.chromium.launch(executable_path=BROWSER, args=FLAGS)
         opened = browser.new_context(viewport={"width": 1280, "height": 800}).new_page()
         opened.goto(address)
         opened.wait_for_selector("section[data-panel=locus][data-state=drawn]", timeout=120_000)
@@ -159,7 +160,7 @@ def stops(folder: Path) -> None:
     """From a press of Stop to the word "stopped": a motion of hours, and a walk along limit cycles."""
     server, address, _ = started(folder)
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=FLAGS)
+        browser = playwright.chromium.launch(executable_path=BROWSER, args=FLAGS)
         opened = browser.new_context(viewport={"width": 1280, "height": 800}).new_page()
         opened.goto(address)
         opened.evaluate(ASK, "motion")

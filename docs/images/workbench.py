@@ -28,7 +28,8 @@ def main() -> None:
         address = re.search(r"http\S+", server.stdout.readline())
         assert address is not None
         with sync_playwright() as playwright:
-            browser = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=["--no-sandbox"])
+            shell = shutil.which("chromium-headless-shell") or shutil.which("chromium")
+            browser = playwright.chromium.launch(executable_path=shell, args=["--no-sandbox"])
             for scheme, name in (("light", "workbench.png"), ("dark", "workbench_dark.png")):
                 taken(browser, address[0] + fragment(), scheme, Path(__file__).with_name(name))
             browser.close()
