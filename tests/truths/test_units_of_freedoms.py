@@ -49,7 +49,7 @@ def test_a_verdict_is_that_of_the_freedom_in_metres():
     motion = simulate(System(mass, 0.0 * mass, stiffness, 0.0, (), names=("x", "a"), angles=("a",)), 20.0,
                       ([1e-3, 0.1], [0.0, 0.0]))  # fmt: skip
     assert "half peak to peak of x 1 mm" in verdict(motion).text
-    assert "half peak to peak of a 100 mrad" in verdict(motion, dof="a").text
+    assert "half peak to peak of a 5.73 °" in verdict(motion, dof="a").text
     assert verdict(motion, dof=1).text == verdict(motion, dof="a").text
 
 

@@ -90,7 +90,7 @@ def test_numbers_of_a_cycle():
     # The envelope comes within 5 % of A when (A/start)^2 exp(-800 t) = 1/0.95^2 - 1.
     assert found.settled_at == pytest.approx(np.log(1e4 / (0.95**-2 - 1.0)) / 800.0, abs=1.5e-3)
     assert verdict(A * WAVE, T).settled_at == 0.0
-    assert "100 um" in found.text
+    assert "100 µm" in found.text
     assert str(found) == found.text
 
 

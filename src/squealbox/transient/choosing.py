@@ -4,6 +4,7 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.law import FrictionLaw
 from squealbox.parameters import ParameterError
@@ -90,8 +91,8 @@ def no_series(system: System) -> str:
     return next((why for c in contacts if (own := texts_of(c.law)) and (why := untraced(own[0]))), "")
 
 
-def chosen_method(method: str | Method, rtol: float | None, atol: Any) -> Method:
+def chosen_method(method: str | Method, rtol: float | None, atol: ArrayLike | None) -> Method:
     """A method with its usual tolerances, or those given."""
     chosen = method if isinstance(method, Method) else Method(method)
-    given = {"rtol": rtol, "atol": atol}
+    given: dict[str, Any] = {"rtol": rtol, "atol": atol}
     return replace(chosen, **{name: value for name, value in given.items() if value is not None})

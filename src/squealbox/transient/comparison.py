@@ -9,7 +9,8 @@ import numpy as np
 
 from squealbox.arguments import public
 from squealbox.result import Array, Outcome, Result, quantity
-from squealbox.system import as_system
+from squealbox.start import StartLike
+from squealbox.system import DesignOrSystem, as_system
 from squealbox.transient.simulating import simulate
 from squealbox.transient.trajectory import Trajectory
 
@@ -49,9 +50,9 @@ class ContactComparison(Result):
 
 @public()
 def compare_contact(
-    design_or_system: Any,
+    design_or_system: DesignOrSystem,
     duration: float,
-    start: Any = None,
+    start: StartLike = None,
     *,
     schemes: Sequence[str] = SCHEMES,
     dof: int = 0,

@@ -7,6 +7,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.arguments import designs, public
 from squealbox.cautions import of_many_runs, of_the_clock
@@ -156,7 +157,7 @@ def simulate_ensemble(
     start: Any = None,
     times: Any = None,
     rtol: float | None = None,
-    atol: Any = None,
+    atol: ArrayLike | None = None,
     width: float = 1e-3,
     start_time: float = 0.0,
     threads: int | None = None,
@@ -283,7 +284,7 @@ def _result(
     )
 
 
-def _counts(column: Any) -> Any:
+def _counts(column: np.ndarray) -> Any:
     return np.nan_to_num(column).astype(np.int64)
 
 
@@ -295,7 +296,7 @@ def _usual(design: Any, names: tuple[str, ...], arrays: list[Any], contact: str,
     return usual_method(as_system(first), contact, count)
 
 
-def _outcome(ended: Any, interrupted: bool) -> Outcome:
+def _outcome(ended: np.ndarray, interrupted: bool) -> Outcome:
     names, counts = np.unique(ended, return_counts=True)
     found = {str(name): int(count) for name, count in zip(names, counts, strict=True)}
     said = ", ".join(f"{count} {name}" for name, count in found.items())

@@ -39,7 +39,7 @@ class Curve:
         """Last instant [s]."""
         return float(self.t[-1])
 
-    def mean(self, left: Any, right: Any) -> Any:
+    def mean(self, left: float | np.ndarray, right: float | np.ndarray) -> Any:
         """Mean over a stretch, or over many."""
         return (self.total(right) - self.total(left)) / (right - left)
 
@@ -52,7 +52,7 @@ class Curve:
         times = np.linspace(left, right, max(given, 4 * turns, 64))
         return times, self.spline(times)
 
-    def swing(self, left: Any, right: Any, period: float) -> tuple[Any, Any]:
+    def swing(self, left: float | np.ndarray, right: float | np.ndarray, period: float | np.ndarray) -> tuple[Any, Any]:
         """Half peak to peak and mid-height in windows, about a line through the means of its first and last period.
 
         `left` and `right` [s] are of one window, or arrays (k,) of many.
@@ -78,7 +78,12 @@ class Curve:
 
 
 def smooth_curve(
-    motion: Any, t: Any = None, *, dof: int | str = 0, begin: float | None = None, end: float | None = None
+    motion: Any,
+    t: np.ndarray | None = None,
+    *,
+    dof: int | str = 0,
+    begin: float | None = None,
+    end: float | None = None,
 ) -> Curve:
     """The curve through a trajectory, or an array and its times, between `begin` and `end` [s]."""
     from scipy.interpolate import CubicHermiteSpline, CubicSpline
@@ -135,7 +140,7 @@ def last_period(curve: Curve) -> tuple[float, float]:
 
     share, length = np.linspace(0.0, 1.0, 257), curve.end - curve.begin
 
-    def misfit(period: Any) -> Any:
+    def misfit(period: float | np.ndarray) -> Any:
         early = curve.end - np.multiply.outer(period, 2.0 - share)
         before, after = curve.spline(early), curve.spline(early + np.expand_dims(period, -1))
         strength = np.sqrt(2.0) * np.std(np.concatenate([before, after], axis=-1), axis=-1)

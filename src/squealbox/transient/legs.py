@@ -126,7 +126,7 @@ def ways_of(system: System, contact: str, width: float, method: Any, given: tupl
 
 
 def leg(
-    system: System, ways: Ways, q: Any, qd: Any, begin: float, duration: float, times: Any,
+    system: System, ways: Ways, q: np.ndarray, qd: np.ndarray, begin: float, duration: float, times: np.ndarray | None,
     progress: Progress | None = None,
 ) -> Leg:  # fmt: skip
     """March from a start of all rows; a usual series that ends at an instant gives way to another method."""
@@ -172,7 +172,15 @@ class Scalar:
     """One march with its records and output, resumed until it ends."""
 
     def __init__(
-        self, system: System, method: Method, scheme: int, width: float, q: Any, qd: Any, time: float, times: Any
+        self,
+        system: System,
+        method: Method,
+        scheme: int,
+        width: float,
+        q: np.ndarray,
+        qd: np.ndarray,
+        time: float,
+        times: np.ndarray | None,
     ) -> None:
         self.system, self.method = system, method
         self.problem = packing.pack(system, method, scheme, width, times is None, (q, qd))

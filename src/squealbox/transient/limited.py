@@ -8,6 +8,7 @@ so every engine takes it, exact contact, ensembles and limit cycles included; it
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.law import NEVER_STICKS, FrictionLaw
 from squealbox.parameters import parameter
@@ -28,10 +29,10 @@ class Limited(FrictionLaw):
     def coefficients(self) -> tuple[Any, ...]:
         return (NEVER_STICKS, self.gain, self.limit)
 
-    def mu(self, velocity: Any) -> Any:
+    def mu(self, velocity: ArrayLike) -> Any:
         return np.minimum(self.gain * np.abs(velocity), self.limit)
 
-    def slope_at(self, velocity: Any) -> Any:
+    def slope_at(self, velocity: ArrayLike) -> Any:
         return self.gain * (self.gain * np.abs(velocity) < self.limit)
 
     @property

@@ -67,7 +67,13 @@ class Stepping(NamedTuple):
 
 
 def time_stepping(
-    system: System, duration: float, q: Any, qd: Any, start_time: float, times: Any, step: float | None
+    system: System,
+    duration: float,
+    q: np.ndarray,
+    qd: np.ndarray,
+    start_time: float,
+    times: np.ndarray | None,
+    step: float | None,
 ) -> Trajectory:
     """March with a fixed step; the trajectory holds every step, or the requested `times` interpolated between steps.
 
@@ -105,7 +111,7 @@ def time_stepping(
     return _trajectory(system, rows[: done + 1], times, settings, outcome, int(done), h * z.mobility)
 
 
-def _stepping(system: System, problem: Any) -> Stepping:
+def _stepping(system: System, problem: np.ndarray) -> Stepping:
     from scipy.sparse import csr_array
 
     n, m = system.size, len(system.contacts)
@@ -135,7 +141,7 @@ def _stepping(system: System, problem: Any) -> Stepping:
     )  # fmt: skip
 
 
-def _at_rest(system: System, qd: Any, time: float) -> Any:
+def _at_rest(system: System, qd: np.ndarray, time: float) -> Any:
     """Which contacts have no relative velocity, to round-off, shape (m,)."""
     table = np.array([c.t for c in system.contacts]).reshape(-1, system.size)
     belts = np.array([float(value_at(c.V, time)) for c in system.contacts])
@@ -144,7 +150,7 @@ def _at_rest(system: System, qd: Any, time: float) -> Any:
     return np.hypot(belts - table @ qd, aside) <= 1e-12 * sizes
 
 
-def _mobilities(t: Any, a: Any, md: Any, ma: Any) -> tuple[Any, Any]:
+def _mobilities(t: np.ndarray, a: np.ndarray, md: np.ndarray, ma: np.ndarray) -> tuple[Any, Any]:
     """Of contacts in a plane: the inverse of what their velocities gain by their impulses, as rows, and a bound."""
     blocks = np.moveaxis(np.array([[np.sum(x * y, axis=1) for y in (md, ma)] for x in (t, a)]), -1, 0)
     hold, reach = np.zeros((len(t), 4)), np.zeros(len(t))
@@ -168,7 +174,13 @@ def _outcome(done: int, steps: int, h: float, sweeps: int, change: float) -> Out
 
 
 def _trajectory(
-    system: System, rows: Any, times: Any, settings: dict[str, Any], outcome: Outcome, steps: int, gains: Any
+    system: System,
+    rows: np.ndarray,
+    times: np.ndarray | None,
+    settings: dict[str, Any],
+    outcome: Outcome,
+    steps: int,
+    gains: np.ndarray,
 ) -> Trajectory:
     """gains (m,): the speed [m/s] that a newton of its friction takes from each contact in a step."""
     n, m = system.size, len(system.contacts)
@@ -205,7 +217,7 @@ def _trajectory(
     )  # fmt: skip
 
 
-def _power_of_opening(system: System, times: Any, q: Any, qd: Any) -> Any:
+def _power_of_opening(system: System, times: np.ndarray, q: np.ndarray, qd: np.ndarray) -> Any:
     total = np.zeros(len(q))
     for contact in system.contacts:
         if contact.unilateral:
@@ -214,19 +226,19 @@ def _power_of_opening(system: System, times: Any, q: Any, qd: Any) -> Any:
     return total
 
 
-def _integral(power: Any, t: Any) -> Any:
+def _integral(power: np.ndarray, t: np.ndarray) -> Any:
     from scipy.integrate import cumulative_trapezoid
 
     return cumulative_trapezoid(power, t, initial=0.0)
 
 
-def _at(times: Any, t: Any, column: Any) -> Any:
+def _at(times: np.ndarray, t: np.ndarray, column: np.ndarray) -> Any:
     flat = column.reshape(len(t), -1)
     values = np.stack([np.interp(times, t, x) for x in flat.T], axis=-1) if flat.shape[1] else np.zeros((len(times), 0))
     return values.reshape(len(times), *column.shape[1:])
 
 
-def _hermite(times: Any, t: Any, q: Any, qd: Any) -> Any:
+def _hermite(times: np.ndarray, t: np.ndarray, q: np.ndarray, qd: np.ndarray) -> Any:
     from scipy.interpolate import CubicHermiteSpline
 
     return CubicHermiteSpline(t, q, qd)(times)

@@ -153,6 +153,6 @@ def _steps(motions: Sequence[Trajectory], of: str) -> Iterator[tuple[Any, Any, A
         yield goes_on[:, 0] if of == "system" else goes_on, *ends
 
 
-def _prolonged(array: Any, count: int) -> Any:
+def _prolonged(array: np.ndarray, count: int) -> Any:
     """The rows, and the last of them as often again as are missing."""
     return np.concatenate([array, np.repeat(array[-1:], count - len(array), axis=0)])

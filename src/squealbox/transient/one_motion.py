@@ -3,6 +3,7 @@
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.schedules import Schedule
 from squealbox.system import Contact, System
@@ -29,7 +30,7 @@ def shares_vary(system: System) -> bool:
     return any(_limit_varies(system.contacts[c]) for group in groups for c in group)
 
 
-def lever(row: Any, first: Any) -> Any:
+def lever(row: ArrayLike, first: ArrayLike) -> Any:
     """By how much a row is longer than another along which it lies."""
     row, first = np.asarray(row, dtype=float), np.asarray(first, dtype=float)
     return np.sum(row * first, axis=-1) / np.sum(first * first, axis=-1)
@@ -54,7 +55,7 @@ def _same_motion(one: Contact, other: Contact) -> bool:
     return parallel and bool(np.all(lever(one.t, other.t) * lever(one.d, other.d) > 0.0))
 
 
-def _along(row: Any, first: Any) -> bool:
+def _along(row: ArrayLike, first: ArrayLike) -> bool:
     """Whether two rows lie along one direction throughout a batch."""
     row, size = np.asarray(row, dtype=float), np.sum(np.square(first), axis=-1)
     if not np.all(size > 0.0):
@@ -74,7 +75,7 @@ SHARED = (
 )
 
 
-def undetermined(system: System, rows: Any, events: Any) -> tuple[str, ...]:
+def undetermined(system: System, rows: np.ndarray, events: np.ndarray) -> tuple[str, ...]:
     """A sentence for each rigid contact whose sliding the laws of the contacts left open along a run.
 
     Forces x of closed and of sticking contacts with A x = 0 change no motion that is held. Where they change another
@@ -93,7 +94,7 @@ def undetermined(system: System, rows: Any, events: Any) -> tuple[str, ...]:
     return tuple(SHARED.format(name=system.contact_names[c]) for c in sorted(set().union(*found)))
 
 
-def _left_open(system: System, mode: Any) -> set[int]:
+def _left_open(system: System, mode: np.ndarray) -> set[int]:
     """The rigid contacts whose sliding is left open in one set of modes."""
     contacts = system.contacts
     closed = [c for c in range(len(contacts)) if contacts[c].rigid and mode[c] != OPEN]

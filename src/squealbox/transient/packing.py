@@ -152,14 +152,14 @@ def rule(name: str) -> Any:
     return _record(np.dtype(kinds), values)
 
 
-def longer(kept: Any) -> Any:
+def longer(kept: np.ndarray) -> Any:
     """The same rows with room for three times as many more, which takes no memory before it is written to."""
     out = np.empty((4 * len(kept), *kept.shape[1:]))
     out[: len(kept)] = kept
     return out
 
 
-def scratch(problem: Any, q: Any, qd: Any, time: float, first_step: float) -> Any:
+def scratch(problem: Any, q: np.ndarray, qd: np.ndarray, time: float, first_step: float) -> Any:
     """The record of working arrays of one march, with the start in place; first_step 0 leaves it to the march."""
     n, m = problem["atol"].shape[0] // 2, problem["static"].shape[0]
     width = 2 * n + m + 5
@@ -210,7 +210,7 @@ def row_width(problem: Any) -> int:
     return int(6 + 2 * problem["size"] + 5 * problem["contacts"])
 
 
-def highest_frequency(stiffness: Any) -> float:
+def highest_frequency(stiffness: np.ndarray) -> float:
     """Highest angular frequency [rad/s] of M^-1 K, without friction."""
     return float(np.sqrt(np.max(np.abs(np.linalg.eigvals(stiffness)), initial=0.0)))
 
@@ -333,7 +333,7 @@ def _terms(value: Any) -> list[tuple[Any, Schedule]]:
     return list(value.terms()) if isinstance(value, Schedule) else [(value, UNIT)]
 
 
-def inverse_mass(mass: Any) -> Any:
+def inverse_mass(mass: np.ndarray) -> Any:
     """M^-1, shape (..., n, n); raises `InvalidSystem` where M is singular to working precision."""
     try:
         inverse = np.linalg.inv(mass)

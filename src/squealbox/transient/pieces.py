@@ -80,7 +80,7 @@ def motion_of(
     start: tuple[Any, Any],
     begin: float,
     duration: float,
-    times: Any,
+    times: np.ndarray | None,
     how: How,
     progress: Progress | None,
 ) -> Trajectory:
@@ -93,7 +93,7 @@ def motion_of(
 
 
 def in_pieces(
-    driven: Driven, start: tuple[Any, Any], begin: float, duration: float, times: Any, how: How,
+    driven: Driven, start: tuple[Any, Any], begin: float, duration: float, times: np.ndarray | None, how: How,
     progress: Progress | None = None, weighed: bool = False,
 ) -> Pieces:  # fmt: skip
     """The motion over `duration` [s] from a start of all rows; the work of its actuators where that is `weighed`."""
@@ -154,7 +154,7 @@ class _Walk:
             scheme = SCHEMES[ways.contact]
             self.pushed = Pushed(self._under, numbers, ways.method, duration, scheme, ways.width)
 
-    def whole(self, times: Any, progress: Progress | None) -> list[Leg]:
+    def whole(self, times: np.ndarray | None, progress: Progress | None) -> list[Leg]:
         """Piece after piece to the end."""
         legs: list[Leg] = []
         now, began = self.begin, clock.monotonic()
@@ -216,7 +216,7 @@ class _Walk:
             found[a] = self.sensed.commands(i, [now], before)[0]
         return found
 
-    def _piece(self, now: float, until: float, times: Any) -> Leg:
+    def _piece(self, now: float, until: float, times: np.ndarray | None) -> Leg:
         """March; where an event lies inside and what is sensed must be told, once more with points between events."""
         numbers = self._numbers(now, until)
         edges = self._edges(now, until, [])
@@ -255,7 +255,7 @@ class _Walk:
             numbers[at + 2 : at + 2 + NODES] = WEIGHTS @ values
         return numbers
 
-    def _under(self, numbers: Any) -> System:
+    def _under(self, numbers: np.ndarray) -> System:
         """The brake in time under the load that belongs to such numbers."""
         system, columns, count = self.driven.system, self.driven.columns, len(self.held)
         load, held = system.load, numbers[:count] @ columns
@@ -267,7 +267,7 @@ class _Walk:
             total = total + Polynomial(p[2:], p[0], p[1]) * columns[a]
         return in_time(system.replace(load=total))
 
-    def _march(self, numbers: Any, now: float, until: float, instants: Any) -> Leg:
+    def _march(self, numbers: np.ndarray, now: float, until: float, instants: np.ndarray | None) -> Leg:
         if self.pushed is not None:
             found = by_step(self.pushed.ready(numbers, self.q, self.qd, now, until, instants), until)
             if found.outcome != "step_underflow" or self.ways.named:
@@ -294,7 +294,7 @@ class _Walk:
         self.work.append(done)
 
 
-def _instants(now: float, until: float, edges: list[float], times: Any) -> Any:
+def _instants(now: float, until: float, edges: list[float], times: np.ndarray | None) -> Any:
     """Instants of one piece: those asked for, and the points of its stretches; None for every step."""
     if times is None and not edges:
         return None
@@ -318,7 +318,7 @@ def _end_of(system: System, of: Leg) -> tuple[Any, Any]:
     return q[-1], qd[-1] + np.linalg.lstsq(rows, of.rows[-1, width - 3 * m + stuck], rcond=1e-12)[0]
 
 
-def _joined(legs: list[Leg], system: System, times: Any) -> Any:
+def _joined(legs: list[Leg], system: System, times: np.ndarray | None) -> Any:
     """The rows of all legs as those of one, with works that go on, at `times` or all."""
     first, last = 1 + 2 * system.size, 6 + 2 * system.size + len(system.contacts)
     parts, carried = [], np.zeros(last - first)

@@ -54,7 +54,7 @@ class EquationRows:
 def row_kinds(system: System) -> tuple[int, ...]:
     """The kind of each row: what M and C hold in any entry of the batch, in the row and in the column."""
 
-    def used(matrix: Any, axis: int) -> Any:
+    def used(matrix: np.ndarray, axis: int) -> Any:
         found = np.any(matrix != 0.0, axis=axis)
         return np.any(found.reshape(-1, found.shape[-1]), axis=0)
 
@@ -114,13 +114,13 @@ def solved_for(system: System, kinds: tuple[int, ...]) -> Any:
     return inverse * level[..., :, None] * rows[..., None, :]
 
 
-def _levels(matrix: Any) -> Any:
+def _levels(matrix: np.ndarray) -> Any:
     """Factors that bring the largest entry of each column to 1."""
     size = np.max(np.abs(matrix), axis=-2)
     return 1.0 / np.where(size > 0.0, size, 1.0)
 
 
-def _check_contacts(system: System, kinds: tuple[int, ...], inverse: Any, damping: Any) -> None:
+def _check_contacts(system: System, kinds: tuple[int, ...], inverse: np.ndarray, damping: np.ndarray) -> None:
     """What the laws of the contacts, solved for accelerations, cannot do on rows without them."""
     light = [i for i, kind in enumerate(kinds) if kind != WITH_MASS]
     algebraic = [i for i, kind in enumerate(kinds) if kind == ALGEBRAIC]
@@ -164,11 +164,11 @@ def _check_contacts(system: System, kinds: tuple[int, ...], inverse: Any, dampin
         )
 
 
-def _solved(inverse: Any, vector: Any) -> Any:
+def _solved(inverse: np.ndarray, vector: np.ndarray) -> Any:
     return np.einsum("...ij,...j->...i", inverse, vector)
 
 
-def _through(n: Any, stiffness: Any, algebraic: list[int]) -> Any:
+def _through(n: np.ndarray, stiffness: np.ndarray, algebraic: list[int]) -> Any:
     """A row that senses algebraic rows, as it senses the others through them."""
     if not algebraic or not np.any(n[..., algebraic]):
         return n
@@ -201,7 +201,7 @@ def memories(system: System) -> tuple[int, ...]:
     return kept or (-1,) * len(system.contacts)
 
 
-def audited(system: System, vectors: Any) -> Any:
+def audited(system: System, vectors: np.ndarray) -> Any:
     """Vectors (..., n) without the rows that the energy audit leaves out."""
     left_out = list(getattr(system, "unaudited", ()))
     if not left_out:
@@ -211,12 +211,12 @@ def audited(system: System, vectors: Any) -> Any:
     return out
 
 
-def audited_matrix(system: System, matrix: Any) -> Any:
+def audited_matrix(system: System, matrix: np.ndarray) -> Any:
     """A matrix (..., n, n) without those rows and columns."""
     return np.swapaxes(audited(system, np.swapaxes(audited(system, matrix), -1, -2)), -1, -2)
 
 
-def consistent(system: System, rows: EquationRows, q: Any, load: Any) -> Any:
+def consistent(system: System, rows: EquationRows, q: np.ndarray, load: np.ndarray) -> Any:
     """The start q (..., n) with the algebraic rows where the others and the load [N] put them."""
     algebraic = rows.of(ALGEBRAIC)
     if not algebraic:

@@ -5,7 +5,6 @@ many places (`_march.modes_held`, `lanes.recording.series_held`).
 """
 
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
@@ -19,7 +18,7 @@ LOOSE = 1e3  # times rtol, where that is larger
 LARGEST = 1e140  # of a row, whose square is an energy
 
 
-def checked(motion: Trajectory, first: Any, last: Any, size: int) -> Trajectory:
+def checked(motion: Trajectory, first: np.ndarray, last: np.ndarray, size: int) -> Trajectory:
     """The motion; with the outcome "energy_unbalanced" where it completed and its energy audit does not close.
 
     `first` and `last` are rows, of `size` freedoms, where the run began and ended, whatever instants were asked for.
@@ -42,7 +41,7 @@ def checked(motion: Trajectory, first: Any, last: Any, size: int) -> Trajectory:
     return replace(motion, outcome=Outcome("energy_unbalanced", why, residual=residual, time=float(motion.t[-1])))
 
 
-def _unclosed(system: System, first: Any, last: Any, size: int) -> tuple[float, float, float]:
+def _unclosed(system: System, first: np.ndarray, last: np.ndarray, size: int) -> tuple[float, float, float]:
     """What is missing from one row to another, the largest term, and the energy that the springs hold throughout [J].
 
     Where a motion is small about a large deflection, the springs' energy tells its change to rtol of itself only.

@@ -4,6 +4,7 @@ A kink of the j-th derivative of a command acts a delay later, and comes back th
 that. It is followed until (highest frequency x length of a piece)^j / j! is nothing.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from math import factorial
 from typing import Any
@@ -48,7 +49,7 @@ class Sensed:
     weights: list[Any] = field(default_factory=list)  # (NODES, a) of the powers of x in each stretch
     due: list[tuple[float, int]] = field(default_factory=list)  # instants at which kinks act, and of which derivative
 
-    def add(self, begin: float, end: float, values: Any) -> None:
+    def add(self, begin: float, end: float, values: np.ndarray) -> None:
         """A stretch of time with the uncut commands (NODES, a) at its points."""
         self.edges.append(begin)
         self.ends.append(end)
@@ -99,7 +100,7 @@ class Sensed:
             for kept in (self.edges, self.ends, self.weights):
                 kept.pop(0)
 
-    def commands(self, a: int, instants: Any, before: bool = False) -> Any:
+    def commands(self, a: int, instants: Sequence[float] | np.ndarray, before: bool = False) -> Any:
         """The cut command of loop a that acts at instants (k,); 0 until it has arrived, at that instant `before` it."""
         sensed = np.asarray(instants, dtype=float) - self.late[a]
         apart = self._apart(float(instants[0]))

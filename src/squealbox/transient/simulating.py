@@ -3,6 +3,7 @@
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.arguments import public
 from squealbox.parameters import ParameterError, known_names
@@ -32,7 +33,7 @@ def simulate(
     contact: str = "exact",
     *,
     rtol: float | None = None,
-    atol: Any = None,
+    atol: ArrayLike | None = None,
     width: float = 1e-3,
     step: float | None = None,
     start_time: float = 0.0,
@@ -119,7 +120,7 @@ def exact_call(system: System) -> tuple[Any, tuple[Any, ...]]:
     return Scalar(system, method, EXACT, 1e-3, rest, rest, 0.0, np.array([0.0, 1.0])).call(1.0, 1.0)
 
 
-def _check_gaps(system: System, q: Any) -> None:
+def _check_gaps(system: System, q: np.ndarray) -> None:
     """A start inside a rigid contact is no start."""
     for i, contact in enumerate(system.contacts):
         if contact.rigid:

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from squealbox.bristles import Dahl, ElastoPlastic, LuGre
 from squealbox.law import FrictionLaw
@@ -33,10 +34,10 @@ class Saturation(FrictionLaw):
     def coefficients(self) -> tuple[Any, ...]:
         return (0.0, self.limit)
 
-    def mu(self, velocity: Any) -> Any:
+    def mu(self, velocity: ArrayLike) -> Any:
         return np.minimum(np.abs(velocity), self.limit)
 
-    def slope_at(self, velocity: Any) -> Any:
+    def slope_at(self, velocity: ArrayLike) -> Any:
         return 1.0 * (np.abs(velocity) < self.limit)
 
     @property

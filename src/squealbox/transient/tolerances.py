@@ -12,7 +12,9 @@ from squealbox.transient.methods import Method
 STANDING = 1e-12  # [m/s] a belt slower than that gives no scale for a tolerance, and what is free to move does
 
 
-def absolute_tolerances(system: System, method: Method, highest: Any, start: tuple[Any, Any] | None = None) -> Any:
+def absolute_tolerances(
+    system: System, method: Method, highest: float | np.ndarray, start: tuple[Any, Any] | None = None
+) -> Any:
     """atol (2n, ...) of the states: as given, or from the speed of the motion, scaled so that both kinds weigh alike.
 
     highest (...) : angular frequency [rad/s]
@@ -39,7 +41,7 @@ def fastest_speed(system: System) -> Any:
     return reduce(np.maximum, (_largest(contact.V) for contact in system.contacts), np.zeros(()))
 
 
-def free_speed(system: System, highest: Any, start: tuple[Any, Any] | None) -> Any:
+def free_speed(system: System, highest: float | np.ndarray, start: tuple[Any, Any] | None) -> Any:
     """Speed [m/s] of a motion in which nothing slides: that which start and load lead to, 1 where neither does."""
     heaviest = np.max(np.abs(system.M), axis=(-1, -2), initial=0.0)
     push = np.asarray(_largest(system.load))

@@ -9,6 +9,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from squealbox import words
 from squealbox.arguments import public
 from squealbox.matrices import liveliest
 from squealbox.result import Array, Outcome, Result, quantity
@@ -153,7 +154,7 @@ def _judged(course: Course, steady: float, gone: float, least_periods: float) ->
     if top == 0.0:
         return DECAYS, "it stays at rest", course
     if np.isfinite(course.rest):
-        why = f"it comes to rest at {_read(course.rest, 's')}" if course.rest > 0.0 else "it stays at rest"
+        why = f"it comes to rest at {words.quantity(course.rest, 's', 3)}" if course.rest > 0.0 else "it stays at rest"
         return DECAYS, why, course
     if np.max(last) <= gone * top:
         return DECAYS, "nothing is left of it", course
@@ -162,7 +163,11 @@ def _judged(course: Course, steady: float, gone: float, least_periods: float) ->
     periods = course.frequency * course.last
     if periods < least_periods:
         told = f"{periods:.2g}"
-        return NOT_DECIDED, f"the last {_read(course.last, 's')} hold only {told} period{'s' * (told != '1')}", course
+        return (
+            NOT_DECIDED,
+            f"the last {words.quantity(course.last, 's', 3)} hold only {told} period{'s' * (told != '1')}",
+            course,
+        )
     now = course.stretch(1.0 - course.part, 1.0)
     change = now[0] * course.last
     if abs(change) <= steady and np.ptp(last) <= 2.0 * steady * np.mean(last):
@@ -244,25 +249,19 @@ def _settled_at(course: Course, kind: str, band: float) -> float:
 
 
 def _sentence(kind: str, why: str, course: Course, settled: float, name: str, unit: str) -> str:
-    words = {DECAYS: "Decays", GROWS: "Grows", SETTLES_ON_CYCLE: "Settles on a cycle", NOT_DECIDED: "Not decided"}
-    text = words[kind] + (f" ({why})" if why else "")
+    called = {DECAYS: "Decays", GROWS: "Grows", SETTLES_ON_CYCLE: "Settles on a cycle", NOT_DECIDED: "Not decided"}
+    text = called[kind] + (f" ({why})" if why else "")
     told = _clear(course.rate, course.rate_error) if kind == NOT_DECIDED else kind != SETTLES_ON_CYCLE
     if np.isfinite(course.rate) and told:
         text += f", growth rate {with_error(course.rate, course.rate_error)} 1/s"
     if np.isnan(course.amplitude) or np.isfinite(course.rest):
         return text + "."
-    last = _read(course.end - course.late, "s")
-    text += f"; half peak to peak{f' of {name}' if name else ''} {_read(course.amplitude, unit)} over the last {last}"
+    size, last = words.quantity(course.amplitude, unit, 3), words.quantity(course.end - course.late, "s", 3)
+    text += f"; half peak to peak{f' of {name}' if name else ''} {size} over the last {last}"
     if np.isfinite(course.frequency):
         text += f" at {course.frequency:.5g} Hz"
     if np.isfinite(settled):
-        text += f"; settled at {_read(settled, 's')}" if settled > course.begin else "; settled from the start"
+        text += (
+            f"; settled at {words.quantity(settled, 's', 3)}" if settled > course.begin else "; settled from the start"
+        )
     return text + "."
-
-
-def _read(value: float, unit: str) -> str:
-    """A value with the prefix that leaves one to three digits before the point."""
-    for factor, prefix in ((1.0, ""), (1e-3, "m"), (1e-6, "u")):
-        if abs(value) >= 0.9995 * factor:
-            return f"{value / factor:.3g} {prefix}{unit}"
-    return f"{value / 1e-9:.3g} n{unit}"

@@ -218,14 +218,14 @@ def _rotated(system: System) -> System | None:
     return Widened(**fields | {"embedding": np.vstack([np.eye(n), T.T])})
 
 
-def _cleaned(matrix: Any) -> Any:
+def _cleaned(matrix: np.ndarray) -> Any:
     return np.where(np.abs(matrix) > NOTHING * np.max(np.abs(matrix), initial=0.0), matrix, 0.0)
 
 
-def _turned(load: Any, T: Any) -> Any:
+def _turned(load: Any, T: np.ndarray) -> Any:
     """A load in the coordinates behind q."""
 
-    def there(weight: Any) -> Any:
+    def there(weight: np.ndarray) -> Any:
         return np.concatenate([np.zeros(len(T)), np.broadcast_to(np.asarray(weight, dtype=float), (len(T),)) @ T])
 
     if not isinstance(load, Schedule):

@@ -37,7 +37,7 @@ class EventText(EquationText):
     probes: list[int]
     weights: list[float]
 
-    def events(self, contact: Any, v: Any, a: Any, q1: Any, v1: Any, a1: Any) -> None:
+    def events(self, contact: Any, v: list[str], a: list[str], q1: list[str], v1: list[str], a1: list[str]) -> None:
         """`accepted` and `event`: whether every event function surely stays positive over the step.
 
         Each function that varies smoothly is a cubic between its values and slopes at both ends; it has no root when
@@ -128,7 +128,9 @@ class EventText(EquationText):
         values = [first, *(stages[k - 1] for k in self.probes), stages[-1]]
         return "(" + " + ".join(f"{w!r} * {x}" for w, x in zip(self.weights, values, strict=True)) + ")"
 
-    def mended(self, contact: Any, a: Any, q1: Any, v1: Any, a1: Any) -> tuple[list[str], list[str], list[str]]:
+    def mended(
+        self, contact: Any, a: list[str], q1: list[str], v1: list[str], a1: list[str]
+    ) -> tuple[list[str], list[str], list[str]]:
         """The state at the event beside which a trial has landed: Taylor's series over `shift`; the same elsewhere."""
         for i in range(self.shape.n):
             jerk = self.fall(a[i], [x["a"][i] for x in contact]) if self.shape.has_mass(i) else "0.0 * t_"
@@ -139,7 +141,9 @@ class EventText(EquationText):
         q2, v2, a2 = ([f"{x}_at{i}" for i in range(self.shape.n)] for x in "qva")
         return q2, v2, a2
 
-    def first_function(self, c: int, contact: Any, v: Any, a: Any, v1: Any, a1: Any) -> tuple[str, str, str, str]:
+    def first_function(
+        self, c: int, contact: Any, v: list[str], a: list[str], v1: list[str], a1: list[str]
+    ) -> tuple[str, str, str, str]:
         """(value at the end, slopes at both ends, least value inside) of the function of a contact's mode."""
         end, stick = contact[-1], self.sticks(c)
         rates = self.first_rate(c, v, a, "t_"), self.first_rate(c, self.velocity, a1, "t_ + hh")
@@ -178,7 +182,7 @@ class EventText(EquationText):
         inside = [k for k in range(1, self.rule.stages) if 0.2 < self.rule.c[k] < 0.95]
         return self.probes if len(self.probes) > 1 else inside[:2]
 
-    def first_rate(self, c: int, v: Any, a: Any, time: str) -> str:
+    def first_rate(self, c: int, v: list[str], a: list[str], time: str) -> str:
         """Slope of the function of a contact's mode; that of a margin is not at hand."""
         time = self.within(time)
         parts = self.signal(c, f"V{c}", time, rate=True) + minus(self.product(f"t{c}", a))
@@ -188,7 +192,7 @@ class EventText(EquationText):
             return rate
         return f"{rate} - {self.row(f'open{c}')} * {self.normal_rate(c, v, time)}"
 
-    def second_function(self, c: int, end: Any, v: Any, v1: Any) -> tuple[str, str, str]:
+    def second_function(self, c: int, end: Any, v: list[str], v1: list[str]) -> tuple[str, str, str]:
         """The normal force of a unilateral contact that slips; 1 otherwise."""
         if not self.shape.unilateral[c]:
             return "1.0 + 0.0 * t_", "0.0 * t_", "0.0 * t_"
@@ -198,7 +202,7 @@ class EventText(EquationText):
         rates = [f"{slips} * {self.normal_rate(c, x, at)}" for x, at in ((v, "t_"), (v1, "t_ + hh"))]
         return f"where({slips} > 0.5, {end['normal'][c]}, 1.0)", rates[0], rates[1]
 
-    def normal_rate(self, c: int, v: Any, time: str) -> str:
+    def normal_rate(self, c: int, v: list[str], time: str) -> str:
         """N0' + n . q'."""
         parts = self.signal(self.shape.m + c, f"N0{c}", self.within(time), rate=True) + self.product(f"n{c}", v)
         return f"({' + '.join(parts) if parts else '0.0 * t_'})"

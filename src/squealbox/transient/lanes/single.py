@@ -88,8 +88,8 @@ class Single:
     """One run, resumed until it ends."""
 
     def __init__(
-        self, system: System, method: Method, q: Any, qd: Any, begin: float, duration: float, times: Any,
-        scheme: int = EXACT, width: float = 1e-3,
+        self, system: System, method: Method, q: np.ndarray, qd: np.ndarray, begin: float, duration: float,
+        times: np.ndarray | None, scheme: int = EXACT, width: float = 1e-3,
     ) -> None:  # fmt: skip
         self.system, self.method = system, method
         made = self.made = prepared(system, scheme, method.tableau)
@@ -104,7 +104,7 @@ class Single:
         self.record, self.scratch = _copy(made.record), _copy(made.scratch)
         self.restart(q, qd, begin, begin + duration, times)
 
-    def restart(self, q: Any, qd: Any, begin: float, end: float, times: Any) -> None:
+    def restart(self, q: np.ndarray, qd: np.ndarray, begin: float, end: float, times: np.ndarray | None) -> None:
         """Be ready for another run from a start of all rows."""
         made, n, m = self.made, self.system.size, len(self.system.contacts)
         self.fixed[:2] = end, begin
@@ -145,7 +145,7 @@ class Single:
         first = self.made.names["atol0"] if n else 0
         return self.fixed[first : first + 2 * n]
 
-    def speeds(self, t: float, qd: Any) -> list[float]:
+    def speeds(self, t: float, qd: np.ndarray) -> list[float]:
         """Sliding velocities [m/s] at an instant."""
         return [float(value_at(c.V, t) - c.t @ qd) for c in self.system.contacts]
 
@@ -223,7 +223,9 @@ class Pushed:
         jobs = _table(system, self.scheme, self.run.method.tableau)
         return dict(zip(parameter_rows(jobs.shape), jobs.fixed[3:].tolist(), strict=True))
 
-    def ready(self, given: Any, q: Any, qd: Any, begin: float, end: float, times: Any) -> Single:
+    def ready(
+        self, given: np.ndarray, q: np.ndarray, qd: np.ndarray, begin: float, end: float, times: np.ndarray | None
+    ) -> Single:
         """The run from a start of all rows under the load of the numbers given."""
         self.run.fixed[:] = self.origin + given @ self.rises
         for name, (value, rises) in self.fields.items():
@@ -232,7 +234,7 @@ class Pushed:
         return self.run
 
 
-def difference(value: Any, before: Any) -> Any:
+def difference(value: float | np.ndarray, before: float | np.ndarray) -> Any:
     """What is between two; nothing where both are the same infinity."""
     with np.errstate(invalid="ignore"):
         return np.where(value == before, 0.0, value - before)

@@ -150,7 +150,9 @@ class Step(RecordedText):
             self.put(f"{self.scales[weight]} = {weight!r} * hh")
         return self.scales[weight]
 
-    def error(self, q: Any, v: Any, q1: Any, v1: Any, vs: Any, as_: Any) -> None:
+    def error(
+        self, q: list[str], v: list[str], q1: list[str], v1: list[str], vs: list[list[str]], as_: list[list[str]]
+    ) -> None:
         """`square`: the squared norm of the embedded error, as in `_runge_kutta.error_norm`."""
         n, rule = self.shape.n, self.rule
         states = [*self.shape.of(WITH_MASS, FIRST_ORDER), *(n + i for i in self.shape.of(WITH_MASS))]

@@ -129,7 +129,7 @@ def _equation(system: System, rows: EquationRows, recorded: bool = False) -> tup
     inverse = rows.inverse
     values: dict[str, Any] = {}
 
-    def put(name: str, matrix: Any) -> None:
+    def put(name: str, matrix: np.ndarray) -> None:
         for i in range(matrix.shape[-2]):
             for j in range(matrix.shape[-1]):
                 values[f"{name}{i}_{j}"] = matrix[..., i, j]
@@ -245,5 +245,5 @@ def _highest_frequency(values: dict[str, Any], n: int) -> Any:
     return np.sqrt(largest)
 
 
-def _times(matrix: Any, vector: Any) -> Any:
+def _times(matrix: np.ndarray, vector: np.ndarray) -> Any:
     return np.einsum("...ij,...j->...i", matrix, np.asarray(vector, dtype=float))

@@ -37,7 +37,7 @@ class Blocks:
 
     def __init__(
         self, method: Method, scheme: int, width: float, start: Any, duration: float, begin: float,
-        observers: tuple[Observer, ...], times: Any, threads: int, progress: Progress | None,
+        observers: tuple[Observer, ...], times: np.ndarray, threads: int, progress: Progress | None,
     ) -> None:  # fmt: skip
         self.method, self.scheme, self.width, self.start = method, scheme, width, start
         self.duration, self.begin, self.observers, self.times = duration, begin, observers, times
@@ -104,7 +104,7 @@ class Blocks:
             self.samples.append(samples if whole or not self.times.size else samples[:, :, keep])
 
     @staticmethod
-    def _least(system: System, fastest: Any) -> Any:
+    def _least(system: System, fastest: np.ndarray) -> Any:
         """The least coefficient (runs, contacts) that each run can have met."""
         batch = system.shape or fastest.shape[:1]
         found = [
@@ -112,7 +112,7 @@ class Blocks:
         ]
         return np.reshape(found, fastest.shape[::-1]).T
 
-    def _compute(self, jobs: Jobs, out: Any, samples: Any, count: int, before: int, total: int) -> None:
+    def _compute(self, jobs: Jobs, out: np.ndarray, samples: np.ndarray, count: int, before: int, total: int) -> None:
         from squealbox.transient.lanes.kernel import lane_kernel
 
         kernel = lane_kernel(jobs.shape)
@@ -125,7 +125,7 @@ class Blocks:
         workers = max(1, min(self.threads, -(-count // lanes)))
         failures: list[BaseException] = []
 
-        def run(jobs: Jobs, samples: Any, counter: Any, count: int, out: Any) -> None:
+        def run(jobs: Jobs, samples: np.ndarray, counter: np.ndarray, count: int, out: np.ndarray) -> None:
             groups, live = on_a_line(GROUPS * size), np.zeros(GROUPS, dtype=np.int64)
             groups[rows.places["alive"] * lanes] = -1.0
             n = jobs.shape.n
@@ -153,7 +153,9 @@ class Blocks:
             run(closer, samples[:1].repeat(len(chosen), 0), np.zeros(1, dtype=np.int64), len(chosen), again)
             out[chosen, 0] = confirmed(closer, out[chosen], again)
 
-    def _watch(self, threads: list[threading.Thread], counter: Any, stop: Any, before: int, total: int) -> None:
+    def _watch(
+        self, threads: list[threading.Thread], counter: np.ndarray, stop: np.ndarray, before: int, total: int
+    ) -> None:
         for thread in threads:
             thread.start()
         try:
@@ -171,7 +173,7 @@ class Blocks:
             self.interrupted = True
 
 
-def looked_at_closely(jobs: Jobs, chosen: Any) -> Jobs:
+def looked_at_closely(jobs: Jobs, chosen: np.ndarray) -> Jobs:
     """Some of the jobs, with half the largest step, so half the interval of the search, and a tenth of tolerances."""
     table, fixed = jobs.table[chosen].copy(), jobs.fixed.copy()
     for row, name in enumerate(parameter_rows(jobs.shape)):
@@ -183,7 +185,7 @@ def looked_at_closely(jobs: Jobs, chosen: Any) -> Jobs:
     return replace(jobs, table=table, fixed=fixed)
 
 
-def confirmed(jobs: Jobs, first: Any, again: Any) -> Any:
+def confirmed(jobs: Jobs, first: np.ndarray, again: np.ndarray) -> Any:
     """How runs ended: as before, or NOT_CONFIRMED where one that completed differs from its closer repetition.
 
     Different are events that number more than one apart, as one may lie at the very end, and an end state off by more
