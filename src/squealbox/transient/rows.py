@@ -64,7 +64,14 @@ def row_kinds(system: System) -> tuple[int, ...]:
 
 def rows_of(system: System) -> EquationRows:
     """The rows of a system; `InvalidSystem` in one sentence where they determine no motion."""
-    found: EquationRows = KEPT.of(system, (), lambda: _rows_of(system))
+
+    def shared() -> EquationRows:
+        made = _rows_of(system)
+        for array in (made.inverse, made.stiffness, made.damping):
+            array.flags.writeable = False
+        return made
+
+    found: EquationRows = KEPT.of(system, (), shared)
     return found
 
 
