@@ -152,6 +152,12 @@ class TaylorStep(EquationText):
             here = f"(abs({self.row(f'q{i}')}) + unit * abs({self.row(f'v{i}')}))"
             self.put(f"size{i} = {self.row(f'atol{i}')} + rtol_ * {here}")
         sizes, speeds = "".join(f"size{i}, " for i in moving), "".join(f"{v[i]}, " for i in moving)
+        for group in () if self.gliding else self.shape.groups:  # the motion does not tell how they share its force
+            k = self.tag
+            limits = " + ".join(f"abs(constant(at(part{c}_{k}, 0), unit))" for c in group)
+            self.put(f"shared{group[0]} = unit * rtol_ * ({limits} + 1e-300)")
+            sizes += f"shared{group[0]}, " * len(group)
+            speeds += "".join(f"hold{c}_{k}, " for c in group)
         self.put(f"reached, fine = reach(({speeds}), ({sizes}), unit, {ORDER})")
         self.put("x = minimum(reached, h_ / unit)")
         self.put("last = x >= rest * 0.999999999999")
