@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from squealbox import Contact, Coulomb, Ramp, Sinusoid, System, simulate
+from squealbox import Contact, Coulomb, DrumBrake, LinearSlope, Ramp, Sinusoid, System, simulate
 
 
 def test_contacts_share_a_force_by_their_limits_throughout_a_step():
@@ -32,3 +32,11 @@ def test_they_let_go_when_what_they_carry_together_is_spent():
     spent = brentq(lambda t: 0.1 * t - 0.5 * (1.3 + 0.97 * np.sin(0.8 * np.pi * t)), 1.3, 1.9)
     assert motion.event_time[:2] == pytest.approx([spent, spent], rel=1e-9)
     assert set(motion.event_contact[:2]) == {0, 1}
+
+
+@pytest.mark.parametrize("reading", ["eq3", "eq3_signed", "componentwise"])
+def test_shares_of_contacts_that_slip_end_no_series(reading):
+    """Both contacts of these readings of the drum sense one motion: while one sticks alone the other carries nothing."""
+    motion = simulate(DrumBrake(friction=LinearSlope(0.44, -0.05), reading=reading), 0.05)
+    assert motion.settings["tableau"] == "taylor"
+    assert "instead_of" not in motion.settings

@@ -155,8 +155,8 @@ class TaylorStep(EquationText):
         for group in () if self.gliding else self.shape.groups:  # the motion does not tell how they share its force
             k = self.tag
             limits = " + ".join(f"abs(constant(at(part{c}_{k}, 0), unit))" for c in group)
-            self.put(f"shared{group[0]} = unit * rtol_ * ({limits} + 1e-300)")
-            sizes += f"shared{group[0]}, " * len(group)
+            self.put(f"shared{group[0]} = rtol_ * ({limits}) + 1e-100")
+            sizes += "".join(f"unit * (shared{group[0]} + {self.row(f'noise{c}')}), " for c in group)
             speeds += "".join(f"hold{c}_{k}, " for c in group)
         self.put(f"reached, fine = reach(({speeds}), ({sizes}), unit, {ORDER})")
         self.put("x = minimum(reached, h_ / unit)")
