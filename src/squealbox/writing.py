@@ -14,12 +14,24 @@ from typing import Any
 
 import numpy as np
 
+from squealbox.arguments import public
 from squealbox.labelled import whole
 from squealbox.result import Result, ResultFileError
 
 DIGITS = 10  # of a number in a table; the labelled data has them all
 
 
+def _a_result(value: object) -> str:
+    return "" if isinstance(value, Result) else "what an analysis returns, such as complex_modes(brake)"
+
+
+def _a_name(value: object) -> str:
+    told = str(value)
+    inside = not ({".", ".."} & {told, *Path(told).parts} or Path(told).is_absolute() or "\0" in told)
+    return "" if inside else "a name for files within the folder, without ending"
+
+
+@public(result=_a_result, name=_a_name)
 def write(
     result: Result, out: str | os.PathLike[str], name: str = "", *, table: Any = None, figure: Any = None, **how: Any
 ) -> list[Path]:

@@ -13,6 +13,7 @@ from squealbox import write
 from squealbox.cli import main
 from squealbox.designs import DrumBrake
 from squealbox.files import write_design
+from squealbox.parameters import ParameterError
 from squealbox.result import Result, ResultFileError, quantity
 from squealbox.stability import complex_modes, stability_boundary
 from squealbox.writing import made, write_table
@@ -149,3 +150,16 @@ def test_columns_of_different_lengths_are_refused_and_nothing_is_left(tmp_path):
     with pytest.raises(ValueError, match="shorter"):
         write_table(tmp_path / "t.csv", {"a": [1.0, 2.0], "b": [1.0]})
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("wrong", [None, "modes", 3.0])
+def test_what_is_no_result_is_refused(wrong, tmp_path):
+    with pytest.raises(ParameterError, match="write.result = .*: expected what an analysis returns"):
+        write(wrong, tmp_path)
+
+
+@pytest.mark.parametrize("name", ["..", ".", "../up", "/tmp/elsewhere"])
+def test_no_file_is_written_outside_its_folder(name, tmp_path):
+    with pytest.raises(ParameterError, match="write.name = .*: expected a name for files within the folder"):
+        write(complex_modes(DrumBrake()), tmp_path / "out", name)
+    assert not list(tmp_path.rglob("*"))

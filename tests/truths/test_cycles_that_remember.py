@@ -137,6 +137,15 @@ def test_one_of_a_family_is_neither_stable_nor_unstable():
     assert "neutral cycle" in str(cycle)
 
 
+def test_a_start_on_one_of_a_family_stays_there():
+    """A block that slides without damping about mu N/k = 0.075: from 0.5 its amplitude is 0.425."""
+    belt = Contact([0.0], [1.0], [1.0], 1.0, 1.0, Coulomb(0.3))
+    cycle = shooting(System([[1.0]], [[0.0]], [[4.0]], 0.0, (belt,)), ([0.5], [0.0]))
+    assert cycle.outcome == "completed"
+    assert cycle.stability == "neutral"
+    assert np.ptp(cycle.q) / 2.0 == pytest.approx(0.425, rel=1e-5)
+
+
 def test_differences_agree_with_the_equation_s_derivative():
     """Two roads to the same matrix, of a system that has both, through stick and slip."""
     belt = Contact([0.0], [1.0], [1.0], 1.0, 0.1, FALLING)

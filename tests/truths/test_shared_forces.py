@@ -36,7 +36,7 @@ def test_they_let_go_when_what_they_carry_together_is_spent():
 
 @pytest.mark.parametrize("reading", ["eq3", "eq3_signed", "componentwise"])
 def test_shares_of_contacts_that_slip_end_no_series(reading):
-    """Both contacts of these readings of the drum sense one motion: while one sticks alone the other carries nothing."""
+    """Both contacts of these readings of the drum sense one motion: while one sticks, the other carries nothing."""
     motion = simulate(DrumBrake(friction=LinearSlope(0.44, -0.05), reading=reading), 0.05)
     assert motion.settings["tableau"] == "taylor"
     assert "instead_of" not in motion.settings

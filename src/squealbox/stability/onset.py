@@ -25,6 +25,7 @@ POINT = 1e-9  # share of the range up to which a stretch without an answer is a 
 SPLIT = 1e-4  # share of the largest |lambda|: a mode that grows or decays by more does not cross
 FUNCTION = 1e-12  # round-off of a scanned function, as a share of its scale
 ROUND_OFF = 1e-14  # share of |lambda| below which a term of the growth rate is none
+ALIKE = 1e-10  # share of the largest |lambda| by which growth rates differ at a root that is known to some digits less
 BESIDE = 1e-6  # share of the range by which the mechanism of a neutral system is looked at beyond its onset
 
 
@@ -321,13 +322,13 @@ def _described(found: Scan, value: float, beside: float, k: int, rising: bool, i
         growth = np.where(rigid & (np.sum(~rigid) > 0), np.inf, growth)
         off = np.abs(growth - (0.0 if np.isnan(here) else here))
         place = int(np.argmin(off))
-        alike = np.flatnonzero(off <= ROUND_OFF * np.nanmax(np.abs(modes.eigenvalues[0]), initial=0.0))
+        alike = np.flatnonzero(off <= ALIKE * np.nanmax(np.abs(modes.eigenvalues[0]), initial=0.0))
         further = value + (BESIDE if rising else -BESIDE) * width
-        if (
-            len(alike) > 1 and (there := _modes_at(found, further)) is not None
-        ):  # some stay undamped: it is the one that leaves
-            followed = [_nearest(there, modes.eigenvalues[0, j]) for j in alike]
-            place = int(alike[np.argmax((1.0 if rising else -1.0) * there.growth_rate[0, followed])])
+        if len(alike) > 1 and (there := _modes_at(found, further)) is not None:
+            # several cross at once, or some stay undamped: it is the one that grows as the k-th where it is unstable
+            grown = np.where(rigid, -np.inf, there.growth_rate[0, :half])
+            one = there.eigenvalues[0, np.argsort(-grown, kind="stable")[k]]
+            place = int(alike[np.argmin(np.abs(modes.eigenvalues[0, alike] - one))])
         eigenvalue = complex(modes.eigenvalues[0, place])
         why = mechanism_at(entry(steady, (0,)), eigenvalue.imag, rank=_rank(modes, place, rigid))
         feeds_beyond = max(why.circulation, why.slope) <= ROUND_OFF * abs(eigenvalue)

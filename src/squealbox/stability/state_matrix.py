@@ -61,9 +61,10 @@ def with_special(about: Linearised, eigenvalues: np.ndarray, special: np.bool_ |
         mass, damping, stiffness = (np.broadcast_to(part, about.K.shape)[free] for part in (about.M, about.C, about.K))
         values, answered = free_body_spectra(mass, damping, stiffness, floating[free])
         values = np.take_along_axis(values, spectrum_order(values), axis=-1)
-        places = np.argwhere(free)[answered]
-        eigenvalues[tuple(places.T)], special = values[answered], np.array(special)
-        special[tuple(places.T)] = False
+        if np.any(answered):
+            places = np.argwhere(free)[answered]
+            eigenvalues[tuple(places.T)], special = values[answered], np.array(special)
+            special[tuple(places.T)] = False
     for at in map(tuple, np.argwhere(special)):
         found = special_modes(about.M[at], about.C[at], about.K[at])
         eigenvalues[at] = np.nan if found is None else found[0]

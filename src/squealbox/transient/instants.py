@@ -23,7 +23,7 @@ def instants_of(function: str, times: Any, start_time: float, duration: float, *
             raise ParameterError(function, "times", times, f"{expected}, or an array of instants")
         return equal_instants(start_time, end, int(times))
     instants = np.atleast_1d(np.asarray(times, dtype=float))
-    inside = np.all((instants >= start_time) & (instants <= end * (1.0 + 1e-12)))
+    inside = np.all((instants >= start_time) & (instants <= end + 1e-12 * abs(end)))
     if instants.ndim != 1 or not instants.size or not inside or np.any(np.diff(instants) < 0.0):
         expected = f"one or more increasing instants within [{start_time:g}, {end:g}] s"
         raise ParameterError(function, "times", times, expected)

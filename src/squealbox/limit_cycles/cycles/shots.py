@@ -16,6 +16,7 @@ from squealbox.result import COMPLETED, Outcome
 from squealbox.transient import Trajectory, is_small
 
 HALVINGS = 6
+KNOWN = 1e-9  # share of the largest singular value below which a derivative of the motion tells nothing
 CLOSE = 1e-6  # mismatch of a derivative that Newton's method may take
 ADVICE = "give a start nearer to the cycle, a longer `settle`, or more `shots`"
 
@@ -55,9 +56,12 @@ class Newton:
             self.history.append(now.norm)
             self.flights = self._derivatives(now)
             halvings = 0 if now.norm < tolerance else HALVINGS
-            following = self._damped(now, self._step(now, normal), halvings)
-            if following is None and halvings:  # one of a family: along it the derivative tells nothing but its error
-                following = self._damped(now, self._step(now, normal, CLOSE), halvings)
+            known = max(KNOWN, *(flight.mismatch for flight in self.flights))
+            following = self._damped(now, self._step(now, normal, known), halvings)
+            if following is None and halvings:  # the derivative may tell less, or more, than it seems
+                following = self._damped(now, self._step(now, normal, CLOSE), halvings) or self._damped(
+                    now, self._step(now, normal), halvings
+                )
             now = now if following is None else following
         self.nodes, self.period, self.size = now.nodes, now.period, now.size
         self.flights = self._derivatives(now, last=True)
@@ -98,7 +102,10 @@ class Newton:
         return normal / np.linalg.norm(normal)
 
     def _step(self, now: Shots, normal: np.ndarray, least: float = 1e-14) -> Any:
-        """Newton step (k 2n + 1,), in scaled states and the share of the period; none along what changes so little."""
+        """Newton step (k 2n + 1,), in scaled states and the share of the period; none along what changes so little.
+
+        Along a family of cycles the derivative tells nothing but its own error.
+        """
         k, size = now.nodes.shape
         scale = self.field.scale
         matrix = np.zeros((k * size + 1, k * size + 1))

@@ -301,8 +301,10 @@ def endless(x: Any, sign: float) -> bool:
     return isinstance(x, float) and x == sign * float("inf")
 
 
-def from_zero(x: Series) -> Series:
+def from_zero(x: Any) -> Any:
     """The series with a start that is not below zero: a speed of slipping may begin at zero with round-off."""
+    if not isinstance(x, Series):
+        return vectors.maximum(x, 0.0)
     return Series(lambda k: vectors.maximum(x[0], 0.0) if k == 0 else at(x, k))
 
 

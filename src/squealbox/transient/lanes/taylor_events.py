@@ -52,7 +52,7 @@ def step_end(
     """Look at a step of length x in the lanes that are not safe. A kink of a law only ends the step."""
     zero = 0.0 * x
     clear = Found(x, zero, zero, zero + 1.0, longest)
-    if not functions and not kinks:
+    if not any(isinstance(each, Series) for each in (*functions, *kinks)):  # a constant has no root
         return clear
     moving = x > 0.0 if kinks else (x > 0.0) & ~safe  # a contact that surely slips may still pass a kink
     return Found(*if_any(moving, lambda: _looked_at(functions, kinks, moving, clear, order), clear))
