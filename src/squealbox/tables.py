@@ -117,7 +117,10 @@ class Tabled:
         return found
 
     def unit_of(self, parameter: str) -> str:
-        """The unit of a dotted parameter of the design a result came from; empty where it kept none."""
+        """The unit of a dotted parameter of the design a result came from; empty where nothing tells it."""
+        told = self.settings.get("units", {})
+        if parameter in told:
+            return str(told[parameter])
         kept = self.inputs.get("system", self.inputs.get("design")) if isinstance(self.inputs, Mapping) else None
         return kept.unit_of(parameter) if isinstance(kept, DataSheet) and parameter else ""
 

@@ -187,6 +187,7 @@ def branch(
     if method == "auto":
         method, start = _chosen(make, start, middle, contact)
     settings = {"bounds": list(bounds), "method": method, "contact": contact, "width": width, "harmonics": harmonics}
+    settings |= {"units": {parameter: unit}} if (unit := unit_of(design, parameter)) else {}
     if isinstance(start, HopfPoint) and (method, contact) not in METHODS_FROM_HOPF:
         raise ParameterError("branch", "start", "a HopfPoint", "shooting or exact contact from a Hopf point")
     if isinstance(start, HopfPoint) and start.outcome.ok:
