@@ -55,9 +55,7 @@ class TaylorStep(EquationText):
         return at_once + WorksText(self.shape).text()
 
     def steps(self) -> str:
-        """Another trial where no lane of the group sticks; not for a single run, which would gain a tenth by it and
-        wait for half as much code again.
-        """
+        """Another trial where no lane of the group sticks, without the forces that hold."""
         if not self.shape.exact:
             return self.trial("trial") + CALLED
         parts = [self.trial("trial")]
