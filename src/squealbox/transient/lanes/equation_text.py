@@ -51,8 +51,12 @@ class EquationText:
         local = f"{name}_"
         if name not in self.loaded:
             self.loaded.add(name)
-            self.put(f"{local} = load(A, b + {self.rows.places[name] * self.shape.lanes})")
+            self.put(f"{local} = {self.read(self.rows.places[name])}")
         return local
+
+    def read(self, place: int) -> str:
+        """The numbers of a row as they are worked with: one for each lane."""
+        return f"load(A, b + {place * self.shape.lanes})"
 
     def keep(self, name: str, value: str) -> None:
         """Write a row."""

@@ -30,13 +30,9 @@ def radau() -> tuple[Any, Any]:
 class WorksText(EquationText):
     """Writes `works_at(A, b)`: works since the start of the step at the instant `since`, and the contacts' ranges."""
 
-    def row(self, name: str) -> str:
-        """A local with the row's number in every place of a register."""
-        local = f"{name}_"
-        if name not in self.loaded:
-            self.loaded.add(name)
-            self.put(f"{local} = spread(A, b + {self.rows.places[name]})")
-        return local
+    def read(self, place: int) -> str:
+        """The number of a row in every place of a register."""
+        return f"spread(A, b + {place})"
 
     def followed(self, name: str, order: int) -> str:
         """The series that the step has left of something followed."""
