@@ -130,6 +130,12 @@ def unit_of(design: object, path: str) -> str:
     return design.unit_of(path) if isinstance(design, DataSheet) else ""
 
 
+def kept_unit(design: object, path: str) -> dict[str, Any]:
+    """The setting by which a result that keeps no design knows the unit of its parameter; none where nothing does."""
+    unit = unit_of(design, path)
+    return {"parameter_units": {path: unit}} if unit else {}
+
+
 def bounds_of(owner: str, name: str, given: Any) -> Bounds:
     """(low, high) of a parameter, or the ends of an axis."""
     if all(hasattr(given, each) for each in ("low", "high", "points")):

@@ -118,7 +118,7 @@ class Tabled:
 
     def unit_of(self, parameter: str) -> str:
         """The unit of a dotted parameter of the design a result came from; empty where nothing tells it."""
-        told = self.settings.get("units", {})
+        told = self.settings.get("parameter_units", {})
         if parameter in told:
             return str(told[parameter])
         kept = self.inputs.get("system", self.inputs.get("design")) if isinstance(self.inputs, Mapping) else None

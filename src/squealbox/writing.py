@@ -16,6 +16,7 @@ import numpy as np
 
 from squealbox.arguments import public
 from squealbox.labelled import whole
+from squealbox.registers import name_of
 from squealbox.result import Result, ResultFileError
 
 DIGITS = 10  # of a number in a table; the labelled data has them all
@@ -58,7 +59,7 @@ def write(
     from squealbox import plots
     from squealbox.plots import drawable
 
-    stem = made(out) / (name or _words(type(result).__name__))
+    stem = made(out) / (name or name_of(type(result)))
     written: list[Path] = []
     with _told(written):
         written.append(result.save(stem.with_name(f"{stem.name}.nc")))
@@ -103,11 +104,6 @@ def _told(written: list[Path]) -> Iterator[None]:
             raise
         there = f"; {', '.join(path.name for path in written)} written" if written else ""
         raise ResultFileError(f"{error.filename}: cannot be written, {error.strerror}{there}") from error
-
-
-def _words(kind: str) -> str:
-    """``ComplexModes`` as complex_modes."""
-    return "".join(f"_{letter.lower()}" if letter.isupper() else letter for letter in kind).lstrip("_")
 
 
 def _cells(array: Any) -> list[Any]:

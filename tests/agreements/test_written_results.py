@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from result_examples import EXAMPLES
-from squealbox import write
+from squealbox import LinearSlope, hopf_point, write
 from squealbox.cli import main
 from squealbox.designs import DrumBrake
 from squealbox.files import write_design
@@ -79,6 +79,8 @@ def test_angles_are_told_in_degrees_and_rotations_in_radians():
     assert {"x [m]", "dx/dt [m/s]", "y [rad]", "dy/dt [rad/s]"} <= set(system.table())
     push = EXAMPLES["DangerousPush"]().table()
     assert (list(push), list(push["unit"])) == (["state", "unit", "push"], ["m", "m", "m/s", "m/s"])
+    born = hopf_point(DrumBrake(friction=LinearSlope(0.45, -0.02)), {"theta1": (1.9, 2.0)})
+    assert next(iter(born.table())) == "theta1 [deg]"
     point = EXAMPLES["DesignPoint"]().table()
     assert list(point)[:4] == ["parameter", "unit", "squeals at", "median"]
 
@@ -163,3 +165,10 @@ def test_no_file_is_written_outside_its_folder(name, tmp_path):
     with pytest.raises(ParameterError, match="write.name = .*: expected a name for files within the folder"):
         write(complex_modes(DrumBrake()), tmp_path / "out", name)
     assert not list(tmp_path.rglob("*"))
+
+
+@pytest.mark.parametrize("name", list(EXAMPLES))
+def test_a_result_is_asked_for_the_unit_of_what_it_does_not_know(name):
+    result = EXAMPLES[name]()
+    measured = {**result.settings, "units": ["", "Hz"]}  # as of rows that are compared
+    assert dataclasses.replace(result, settings=measured).unit_of("") == ""

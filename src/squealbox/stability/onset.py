@@ -12,7 +12,7 @@ from squealbox.result import Array, Outcome, Result, quantity
 from squealbox.stability.crossing_in_band import crossings_between
 from squealbox.stability.deflation import vibrating
 from squealbox.stability.eigenvalues import ComplexModes, OneEigenvalue, modes_of
-from squealbox.stability.family import SteadyFamily, entry
+from squealbox.stability.family import Steady, SteadyFamily, entry
 from squealbox.stability.in_band import POINTS as POINTS_IN_BAND
 from squealbox.stability.mechanisms import Mechanism, mechanism_at
 from squealbox.stability.polishing import Polished, polished
@@ -282,10 +282,17 @@ def _crossing(found: Scan, i: int, k: int, width: float) -> dict[str, Any]:
     return _described(found, value, value, k, rising, i, width)
 
 
-def _modes_at(found: Scan, value: float) -> ComplexModes | None:
-    """The modes at a value, None without steady sliding there."""
+def _beside(found: Scan, value: float) -> tuple[Steady, ComplexModes] | None:
+    """Steady sliding at a value and its modes, None where there is none."""
     steady = found.family.at(np.array([value]))
-    return modes_of(steady) if steady.equilibrium.exists[0] else None
+    return (steady, modes_of(steady)) if steady.equilibrium.exists[0] else None
+
+
+def _growing(modes: ComplexModes, undamped: int) -> Any:
+    """Growth rate [1/s] of each mode, conjugates counted once; -inf of common motions of bodies, NaN stays."""
+    half = modes.eigenvalues.shape[-1] // 2
+    resting = modes.eigenvalues[0, :half] == 0.0
+    return np.where(resting & (np.cumsum(resting) <= undamped), -np.inf, modes.growth_rate[0, :half])
 
 
 def _nearest(modes: ComplexModes, eigenvalue: complex) -> int:
@@ -294,9 +301,9 @@ def _nearest(modes: ComplexModes, eigenvalue: complex) -> int:
     return int(np.argmin(np.abs(modes.eigenvalues[0, :half] - eigenvalue)))
 
 
-def _rank(modes: ComplexModes, place: int, rigid: Any) -> int:
-    """How many modes, but for `rigid` ones, grow faster than one of them."""
-    return int(np.sum((modes.growth_rate[0, : len(rigid)] > modes.growth_rate[0, place]) & ~rigid))
+def _rank(modes: ComplexModes, place: int, undamped: int) -> int:
+    """How many modes grow faster than one of them."""
+    return int(np.sum(_growing(modes, undamped) > modes.growth_rate[0, place]))
 
 
 def _described(found: Scan, value: float, beside: float, k: int, rising: bool, i: int, width: float) -> dict[str, Any]:
@@ -308,33 +315,29 @@ def _described(found: Scan, value: float, beside: float, k: int, rising: bool, i
             break
         steady = found.family.at(np.array([value + share * width]))  # K_eff is singular at the root itself
     modes = modes_of(steady)
-    half = modes.eigenvalues.shape[-1] // 2
+    beyond = value + (BESIDE if rising else -BESIDE) * width
     if found.neutral:
         eigenvalue = merging(modes.eigenvalues[0])
-        place = int(np.argmin(np.abs(modes.eigenvalues[0, :half] - eigenvalue)))
-        beyond = value + (BESIDE if rising else -BESIDE) * width
+        place = _nearest(modes, eigenvalue)
         why = mechanism_at(entry(found.family.at(np.array([beyond])), (0,)), eigenvalue.imag)
         counts = (int(found.functions[i, 0] > 0.0), int(rising))
     else:
-        growth = np.where(np.isnan(modes.growth_rate[0, :half]), np.inf, modes.growth_rate[0, :half])
-        rigid = (modes.eigenvalues[0, :half] == 0.0) & (np.cumsum(modes.eigenvalues[0, :half] == 0.0) <= found.undamped)
         here = found.at(place_of)[k] if found.family.band else found.functions_of(steady)[0, k]
-        growth = np.where(rigid & (np.sum(~rigid) > 0), np.inf, growth)
-        off = np.abs(growth - (0.0 if np.isnan(here) else here))
+        growth = _growing(modes, found.undamped)
+        off = np.where(np.isfinite(growth), np.abs(growth - (0.0 if np.isnan(here) else here)), np.inf)
         place = int(np.argmin(off))
         alike = np.flatnonzero(off <= ALIKE * np.nanmax(np.abs(modes.eigenvalues[0]), initial=0.0))
-        further = value + (BESIDE if rising else -BESIDE) * width
-        if len(alike) > 1 and (there := _modes_at(found, further)) is not None:
+        if len(alike) > 1 and (there := _beside(found, beyond)):
             # several cross at once, or some stay undamped: it is the one that grows as the k-th where it is unstable
-            grown = np.where(rigid, -np.inf, there.growth_rate[0, :half])
-            one = there.eigenvalues[0, np.argsort(-grown, kind="stable")[k]]
+            ranked = np.argsort(-_growing(there[1], found.undamped), kind="stable")
+            one = there[1].eigenvalues[0, ranked[k]]
             place = int(alike[np.argmin(np.abs(modes.eigenvalues[0, alike] - one))])
         eigenvalue = complex(modes.eigenvalues[0, place])
-        why = mechanism_at(entry(steady, (0,)), eigenvalue.imag, rank=_rank(modes, place, rigid))
+        why = mechanism_at(entry(steady, (0,)), eigenvalue.imag, rank=_rank(modes, place, found.undamped))
         feeds_beyond = max(why.circulation, why.slope) <= ROUND_OFF * abs(eigenvalue)
-        if feeds_beyond and (there := _modes_at(found, further)) is not None:
-            rank = _rank(there, _nearest(there, eigenvalue), rigid)
-            why = mechanism_at(entry(found.family.at(np.array([further])), (0,)), eigenvalue.imag, rank=rank)
+        if feeds_beyond and (there := _beside(found, beyond)):
+            rank = _rank(there[1], _nearest(there[1], eigenvalue), found.undamped)
+            why = mechanism_at(entry(there[0], (0,)), eigenvalue.imag, rank=rank)
         counts = (k, k + 1) if rising else (k + 1, k)
     exact = _exact(found, value, beside, eigenvalue, k, i)
     return {

@@ -17,7 +17,7 @@ import numpy as np
 from squealbox import cautions
 from squealbox.arguments import public
 from squealbox.continuation import PathPoint, StepControl, along
-from squealbox.family import Bounds, DesignOrRecipe, Family, Varied, unit_of
+from squealbox.family import Bounds, DesignOrRecipe, Family, Varied, kept_unit, unit_of
 from squealbox.limit_cycles.branches.doubling import doubled
 from squealbox.limit_cycles.branches.harmonic_path import HarmonicPath
 from squealbox.limit_cycles.branches.hopf import HopfPoint
@@ -187,7 +187,7 @@ def branch(
     if method == "auto":
         method, start = _chosen(make, start, middle, contact)
     settings = {"bounds": list(bounds), "method": method, "contact": contact, "width": width, "harmonics": harmonics}
-    settings |= {"units": {parameter: unit}} if (unit := unit_of(design, parameter)) else {}
+    settings |= kept_unit(design, parameter)
     if isinstance(start, HopfPoint) and (method, contact) not in METHODS_FROM_HOPF:
         raise ParameterError("branch", "start", "a HopfPoint", "shooting or exact contact from a Hopf point")
     if isinstance(start, HopfPoint) and start.outcome.ok:

@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from squealbox.arguments import public
-from squealbox.family import Bounds, DesignOrRecipe, Family, Varied, unit_of
+from squealbox.family import Bounds, DesignOrRecipe, Family, Varied, kept_unit
 from squealbox.friction import Table
 from squealbox.limit_cycles.cycles.field import Field
 from squealbox.limit_cycles.cycles.starting import steady_state
@@ -124,8 +124,7 @@ def hopf_point(design: DesignOrRecipe, parameter: Varied, bounds: Bounds | None 
     if outcome.ok and abs(np.imag(found.eigenvalue)) == 0.0:
         outcome = Outcome("no_hopf", "stability changes by a real eigenvalue: no cycle is born there")
     inputs = {"system": make(bounds[0])}
-    settings: dict[str, Any] = {"bounds": list(bounds)}
-    settings |= {"units": {parameter: unit}} if (unit := unit_of(design, parameter)) else {}
+    settings = {"bounds": list(bounds), **kept_unit(design, parameter)}
     about: dict[str, Any] = {"parameter": parameter, "settings": settings}
     if not outcome.ok:
         nan = np.full(2 * make(bounds[0]).size, np.nan)

@@ -17,6 +17,7 @@ from squealbox.transient import Trajectory, is_small
 
 HALVINGS = 6
 KNOWN = 1e-9  # share of the largest singular value below which a derivative of the motion tells nothing
+ROUND_OFF = 1e-14
 CLOSE = 1e-6  # mismatch of a derivative that Newton's method may take
 ADVICE = "give a start nearer to the cycle, a longer `settle`, or more `shots`"
 
@@ -57,11 +58,9 @@ class Newton:
             self.flights = self._derivatives(now)
             halvings = 0 if now.norm < tolerance else HALVINGS
             known = max(KNOWN, *(flight.mismatch for flight in self.flights))
-            following = self._damped(now, self._step(now, normal, known), halvings)
-            if following is None and halvings:  # the derivative may tell less, or more, than it seems
-                following = self._damped(now, self._step(now, normal, CLOSE), halvings) or self._damped(
-                    now, self._step(now, normal), halvings
-                )
+            shares = (known, CLOSE, ROUND_OFF) if halvings else (known,)  # it may tell less, or more, than it seems
+            tried = (self._damped(now, self._step(now, normal, least), halvings) for least in shares)
+            following = next((each for each in tried if each is not None), None)
             now = now if following is None else following
         self.nodes, self.period, self.size = now.nodes, now.period, now.size
         self.flights = self._derivatives(now, last=True)
@@ -101,7 +100,7 @@ class Newton:
         normal = self.field.rate(self.reference, motion.mode[0]) * self.field.scale
         return normal / np.linalg.norm(normal)
 
-    def _step(self, now: Shots, normal: np.ndarray, least: float = 1e-14) -> Any:
+    def _step(self, now: Shots, normal: np.ndarray, least: float) -> Any:
         """Newton step (k 2n + 1,), in scaled states and the share of the period; none along what changes so little.
 
         Along a family of cycles the derivative tells nothing but its own error.
